@@ -1,0 +1,112 @@
+//! What every windowed example shares: the app with its plugins, a scene to stand in, woven materials, and a way to run
+//! without a window that writes pictures instead.
+
+#![allow(dead_code, unused_imports, reason = "each example is its own crate and uses only a part of this module")]
+
+mod arguments;
+mod capture;
+mod loading;
+mod machine;
+mod mipmaps;
+mod scenery;
+mod weave;
+
+use std::path::PathBuf;
+
+use bevy::{
+    app::ScheduleRunnerPlugin,
+    gltf::GltfPlugin,
+    mesh::{MeshVertexAttribute, VertexFormat},
+    prelude::*,
+    render::RenderPlugin,
+    window::{ExitCondition, WindowResolution},
+    winit::WinitPlugin,
+};
+use bevy_panorbit_camera::PanOrbitCameraPlugin;
+use clap::Parser;
+
+use arguments::Arguments;
+use capture::CapturePlugin;
+pub use scenery::{spawn_camera, spawn_ground, spawn_scenery, spawn_sky, spawn_sun};
+pub use weave::{fabric_material, woven, woven_normals};
+
+pub const ATTRIBUTE_PIN: MeshVertexAttribute = MeshVertexAttribute::new("Pin", 0x6472_6170_6550, VertexFormat::Float32);
+
+/// An app that shows its scene in a window, or writes it to picture files where `--capture` asks for them or where
+/// there is no display to open a window on.
+pub fn app(title: &str, help: &str) -> App {
+    let arguments = Arguments::parse();
+    if let Err(cause) = machine::graphics_adapter() {
+        fail(cause);
+    }
+    let directory = arguments.capture.clone().or_else(directory_without_a_display);
+
+    let mut app = App::new();
+    match directory {
+        Some(directory) => {
+            if let Err(cause) = capture::create_directory(&directory) {
+                fail(cause);
+            }
+            app.add_plugins(plugins_without_a_window());
+            app.add_plugins(CapturePlugin {
+                directory,
+                frames: arguments.frames,
+                every: arguments.every,
+                size: arguments.size.0,
+            });
+        }
+        None => {
+            app.add_plugins((plugins_with_a_window(title, arguments.size.0), PanOrbitCameraPlugin));
+        }
+    }
+    let help = help.to_owned();
+    app.add_systems(Startup, move |mut commands: Commands| {
+        scenery::spawn_help(&mut commands, &help);
+    });
+    app
+}
+
+/// Ends an example that cannot run here with one clear sentence instead of a panic.
+fn fail(cause: String) -> ! {
+    eprintln!("{cause}");
+    std::process::exit(1)
+}
+
+fn directory_without_a_display() -> Option<PathBuf> {
+    if machine::has_display() {
+        return None;
+    }
+    let directory = PathBuf::from("captures").join(machine::example_name());
+    println!("There is no display to open a window on: writing pictures to {} instead.", directory.display());
+    Some(directory)
+}
+
+fn plugins_with_a_window(title: &str, size: UVec2) -> impl PluginGroup {
+    shared_plugins().set(WindowPlugin {
+        primary_window: Some(Window { title: title.to_owned(), resolution: WindowResolution::from(size), ..default() }),
+        ..default()
+    })
+}
+
+fn plugins_without_a_window() -> impl PluginGroup {
+    shared_plugins()
+        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
+        .set(RenderPlugin {
+            // A pipeline that is still being compiled leaves its objects out of the frame.
+            synchronous_pipeline_compilation: true,
+            ..default()
+        })
+        .disable::<WinitPlugin>()
+        .add(ScheduleRunnerPlugin::default())
+}
+
+fn shared_plugins() -> bevy::app::PluginGroupBuilder {
+    DefaultPlugins
+        .set(AssetPlugin {
+            // An absolute path, so that the program finds its assets when it isn't started by cargo.
+            file_path: concat!(env!("CARGO_MANIFEST_DIR"), "/assets").to_owned(),
+            ..default()
+        })
+        // The attribute is `_PIN` in the file: the loader strips the leading underscore before it compares.
+        .set(GltfPlugin::default().add_custom_vertex_attribute("PIN", ATTRIBUTE_PIN))
+}

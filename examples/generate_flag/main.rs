@@ -1,0 +1,27 @@
+//! Writes `assets/flag.glb`, the flag that the other examples hang on a pole:
+//!
+//! ```sh
+//! cargo run --example generate_flag
+//! ```
+//!
+//! It has what makes real models awkward as cloth: a UV seam in the middle, where one point of the cloth is two
+//! vertices of the mesh, and pins that come from the modelling tool, as the vertex attribute `_PIN`.
+
+mod glb;
+mod mesh;
+mod picture;
+
+use std::{error::Error, fs, path::Path};
+
+/// Width and height of the cloth in metres.
+const SIZE: [f32; 2] = [1.5, 1.0];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+    let path = directory.join("flag.glb");
+    let file = glb::file(&mesh::flag(), &picture::png()?)?;
+    fs::create_dir_all(directory)?;
+    fs::write(&path, &file)?;
+    println!("{} ({} kB)", path.display(), file.len() / 1000);
+    Ok(())
+}

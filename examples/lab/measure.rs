@@ -1,0 +1,109 @@
+//! Runs a scene and measures time, strain and penetration.
+
+use std::{fs, io, path::Path};
+
+use bevy::math::Vec3A;
+use bevy_drape::solver::{self, Scratch, SpringKind, constraint::spring::strain};
+use cpu_time::ThreadTime;
+use serde_json::{Value, json};
+
+use super::{
+    Options, Solver,
+    scene::{FRAME, Scene},
+};
+
+/// Frames at the end that the strain is averaged over.
+const LAST: usize = 60;
+
+/// What is measured after each frame.
+struct Frame {
+    microseconds: f64,
+    max_strain: f32,
+    p99_strain: f32,
+    mean_strain: f32,
+    penetration: f32,
+}
+
+/// Runs `scene` and returns its line.
+pub fn run(name: &str, options: &Options, mut scene: Scene) -> io::Result<Value> {
+    let mut scratch = Scratch::default();
+    let mut substeps = 0;
+    let mut frames = Vec::new();
+    let positions_after = options.at_seconds.map_or(options.frames, |seconds| (seconds / FRAME).round() as u32);
+    for frame in 1..=options.frames {
+        let mut particles = core::mem::take(&mut scene.particles);
+        let ctx = scene.context(options);
+        let start = ThreadTime::now();
+        let report = solver::step(&mut particles, &scene.topology, &ctx, &mut scratch);
+        let microseconds = start.elapsed().as_secs_f64() * 1e6;
+        substeps = report.substeps;
+        scene.particles = particles;
+        frames.push(measure(&scene, microseconds));
+        if let Some(file) = &options.positions
+            && frame == positions_after
+        {
+            write_positions(file, &scene.particles.position)?;
+        }
+    }
+    let last = &frames[frames.len().saturating_sub(LAST)..];
+    let mean = |value: fn(&Frame) -> f32| last.iter().map(value).sum::<f32>() / last.len() as f32;
+    let most = |value: fn(&Frame) -> f32| frames.iter().map(value).fold(0.0, f32::max);
+    Ok(json!({
+        "scene": name,
+        "n": options.n,
+        "particles": scene.particles.len(),
+        "springs": scene.topology.springs.len(),
+        "substeps": substeps,
+        "solver": match options.solver { Solver::Xpbd => "xpbd", Solver::Explicit => "explicit" },
+        "threads": options.threads,
+        "us_per_frame_median": median(frames.iter().map(|frame| frame.microseconds).collect()).round(),
+        "max_strain": mean(|frame| frame.max_strain),
+        "p99_strain": mean(|frame| frame.p99_strain),
+        "mean_strain": mean(|frame| frame.mean_strain),
+        "max_strain_over_time": most(|frame| frame.max_strain),
+        "max_penetration_m": most(|frame| frame.penetration),
+        "max_speed_end": scene.particles.velocity.iter().map(|v| v.length()).fold(0.0, f32::max),
+        "finite": scene.particles.is_finite(),
+        "peak_rss_mb": peak_rss_mb(),
+    }))
+}
+
+fn measure(scene: &Scene, microseconds: f64) -> Frame {
+    let position = &scene.particles.position;
+    let mut strains: Vec<f32> =
+        scene.topology.springs_of(SpringKind::Structural).map(|spring| strain(position, spring)).collect();
+    strains.sort_unstable_by(f32::total_cmp);
+    let depth = |p: &Vec3A| {
+        let distances = scene
+            .obstacles
+            .iter()
+            .map(|obstacle| obstacle.shape.surface(obstacle.end.inverse().transform_point(*p)).distance);
+        distances.fold(0.0, |deepest, distance| f32::max(deepest, -distance))
+    };
+    Frame {
+        microseconds,
+        max_strain: strains[strains.len() - 1],
+        p99_strain: strains[(strains.len() - 1) * 99 / 100],
+        mean_strain: strains.iter().sum::<f32>() / strains.len() as f32,
+        penetration: position.iter().map(depth).fold(0.0, f32::max),
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn write_positions(file: &Path, positions: &[Vec3A]) -> io::Result<()> {
+    let lines: Vec<String> = positions.iter().map(|p| format!("{} {} {}\n", p.x, p.y, p.z)).collect();
+    let named = |error| io::Error::other(format!("positions can't be written to {}: {error}", file.display()));
+    fs::write(file, lines.concat()).map_err(named)
+}
+
+/// The most memory that the process has held, MB. Linux says; elsewhere null.
+fn peak_rss_mb() -> Option<f64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some((kilobytes / 1024.0).round())
+}

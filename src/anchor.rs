@@ -1,0 +1,183 @@
+//! Pinned particles follow their targets; a cloth follows its entity's teleports and stays near its origin.
+
+use bevy::{
+    math::{Affine3A, Vec3A},
+    prelude::*,
+};
+
+use crate::{
+    build,
+    cloth::ClothStatus,
+    draw::mesh::ClothMesh,
+    pins::{PinTarget, Pins, targets_by_particle},
+    solver::Anchor,
+    state::ClothState,
+};
+
+/// Positions farther than this from the cloth's origin, m, move the origin: an `f32` then still resolves 0.02 mm.
+const FARTHEST: f32 = 256.0;
+
+/// A fixed particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HeldPin {
+    pub particle: u32,
+    pub target: PinTarget,
+    /// Its place in the target's own space; for [`PinTarget::World`], and for a target that can't be inverted, its
+    /// place relative to the cloth's origin.
+    pub offset: Vec3A,
+}
+
+/// World poses of entities, up to date within a frame.
+pub(crate) type Poses<'w, 's> = TransformHelper<'w, 's>;
+
+/// Reads changed [`Pins`] and re-ties the tethers.
+pub(crate) fn update_pins(
+    mut cloths: Query<(Entity, &Pins, &mut ClothState, &ClothMesh, &ClothStatus), Changed<Pins>>,
+    meshes: Res<Assets<Mesh>>,
+    poses: Poses,
+) {
+    for (entity, pins, mut state, mesh, status) in &mut cloths {
+        let Some(source) = meshes.get(&mesh.source) else { continue };
+        if *status != ClothStatus::Ready {
+            continue;
+        }
+        match targets_by_particle(pins, source, &state.particle_of_vertex, &state.topology) {
+            Ok(targets) => hold(&mut state, &targets, entity, &poses),
+            Err(error) => warn!("cloth {entity} keeps the pins that it had: {error}"),
+        }
+    }
+}
+
+/// Pins particles to their targets where they are now, and lets go of the others.
+///
+/// A particle that keeps its target keeps its place there.
+pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity, poses: &Poses) {
+    let pins: Vec<HeldPin> = (0..)
+        .zip(targets)
+        .filter(|&(_, &target)| target != PinTarget::Free)
+        .map(|(particle, &target)| {
+            let held = state.pins.binary_search_by_key(&particle, |pin| pin.particle).ok();
+            let kept = held.map(|i| state.pins[i]).filter(|pin| pin.target == target);
+            kept.unwrap_or_else(|| {
+                let place = state.particles.position[particle as usize];
+                let pose = target_pose(target, cloth, poses);
+                let offset = match pose {
+                    Some(pose) => pose.matrix3.inverse() * (place + (Vec3A::from(state.origin) - pose.translation)),
+                    None => place,
+                };
+                HeldPin { particle, target, offset }
+            })
+        })
+        .collect();
+    if pins == state.pins {
+        return;
+    }
+    let particles: Vec<u32> = pins.iter().map(|pin| pin.particle).collect();
+    state.tethers = build::tethers(&state.topology, &particles);
+    state.pins = pins;
+    set_masses(state);
+}
+
+/// Gives free particles their mass, and fixed ones none that could be moved.
+pub(crate) fn set_masses(state: &mut ClothState) {
+    let Some(material) = &state.material else { return };
+    let mut is_fixed = vec![false; state.particles.len()];
+    for pin in &state.pins {
+        is_fixed[pin.particle as usize] = true;
+    }
+    state.particles.set_masses(&state.topology, material, |i| is_fixed[i]);
+}
+
+/// Plans the way of every pinned particle over the coming step.
+pub(crate) fn follow_targets(mut cloths: Query<(Entity, &mut ClothState, &ClothStatus)>, poses: Poses) {
+    for (entity, mut state, status) in &mut cloths {
+        if *status != ClothStatus::Ready {
+            continue;
+        }
+        let state = &mut *state;
+        if let Ok(pose) = poses.compute_global_transform(entity) {
+            let pose = pose.affine();
+            if core::mem::take(&mut state.requests.teleport) {
+                teleport(state, pose);
+            }
+            state.pose = pose;
+        }
+        stay_near_origin(state);
+        plan_anchors(state, entity, &poses);
+    }
+}
+
+fn plan_anchors(state: &mut ClothState, cloth: Entity, poses: &Poses) {
+    let origin = Vec3A::from(state.origin);
+    // Pins of one target stand together mostly: its pose is looked up once.
+    let mut latest: Option<(PinTarget, Option<Affine3A>)> = None;
+    state.work.anchors.clear();
+    for pin in &state.pins {
+        let pose = match latest {
+            Some((target, pose)) if target == pin.target => pose,
+            _ => target_pose(pin.target, cloth, poses),
+        };
+        latest = Some((pin.target, pose));
+        let start = state.particles.position[pin.particle as usize];
+        let end = match (pin.target, pose) {
+            (_, Some(pose)) => pose.matrix3 * pin.offset + (pose.translation - origin),
+            (PinTarget::World, None) => pin.offset,
+            // The target is gone: stay.
+            (_, None) => start,
+        };
+        let end = if end.is_finite() { end } else { start };
+        state.work.anchors.push(Anchor { particle: pin.particle, start, end });
+    }
+}
+
+/// The pose that a target's pins follow. None for the world, an entity that is gone, and a transform that is flat.
+fn target_pose(target: PinTarget, cloth: Entity, poses: &Poses) -> Option<Affine3A> {
+    let entity = match target {
+        PinTarget::Cloth => cloth,
+        PinTarget::Entity(Some(entity)) => entity,
+        PinTarget::Entity(None) | PinTarget::World | PinTarget::Free => return None,
+    };
+    let pose = poses.compute_global_transform(entity).ok()?.affine();
+    is_invertible(&pose).then_some(pose)
+}
+
+/// Whether a transform keeps volume: all of its scales are finite and not zero.
+pub(crate) fn is_invertible(pose: &Affine3A) -> bool {
+    pose.is_finite() && pose.matrix3.determinant().is_normal() && pose.inverse().is_finite()
+}
+
+/// Carries the cloth rigidly from the pose of its latest step to `pose`, velocities and world pins with it.
+fn teleport(state: &mut ClothState, pose: Affine3A) {
+    if !is_invertible(&state.pose) || !is_invertible(&pose) {
+        return;
+    }
+    let turn = pose.matrix3 * state.pose.matrix3.inverse();
+    let (old_place, old_origin) = (state.pose.translation, Vec3A::from(state.origin));
+    let carry = |p: &mut Vec3A| *p = turn * (*p + (old_origin - old_place));
+    state.origin = pose.translation.into();
+    for positions in [&mut state.particles.position, &mut state.step_start] {
+        positions.iter_mut().for_each(carry);
+    }
+    for velocity in &mut state.particles.velocity {
+        *velocity = turn * *velocity;
+    }
+    for pin in state.pins.iter_mut().filter(|pin| pin.target == PinTarget::World) {
+        carry(&mut pin.offset);
+    }
+}
+
+/// Moves the origin after a cloth that has gone far from it.
+fn stay_near_origin(state: &mut ClothState) {
+    let Some(&place) = state.particles.position.first() else { return };
+    if place.abs().max_element() < FARTHEST {
+        return;
+    }
+    let shift = place.round();
+    state.origin += Vec3::from(shift);
+    for positions in [&mut state.particles.position, &mut state.step_start] {
+        positions.iter_mut().for_each(|p| *p -= shift);
+    }
+    for pin in state.pins.iter_mut().filter(|pin| pin.target == PinTarget::World) {
+        pin.offset -= shift;
+    }
+}

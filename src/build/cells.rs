@@ -1,0 +1,65 @@
+//! Finds the quads of a mesh that arrives triangulated: pairs of triangles that form a near-rectangle.
+
+use bevy::prelude::*;
+
+use super::edges::{Edges, HalfEdge};
+
+/// Largest |cos| of a corner of a cell: 70° to 110° count as nearly right.
+const MOST_COSINE: f32 = 0.342;
+
+/// Least cosine between the normals of a cell's two triangles: a cell is nearly flat.
+const LEAST_FLATNESS: f32 = 0.9;
+
+/// The cells of a mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Cells {
+    /// Corners of each cell, around it. The mesh's own diagonal joins the first and the third.
+    pub corners: Vec<[u32; 4]>,
+    /// Cell of each triangle, if it is in one.
+    pub of_triangle: Vec<Option<u32>>,
+}
+
+/// Pairs triangles into cells, the most rectangular pairs first; each triangle is in one cell at most.
+pub(crate) fn find(rest: &[Vec3], triangles: &[[u32; 3]], edges: &Edges) -> Cells {
+    let mut candidates: Vec<(f32, &[HalfEdge])> = edges
+        .iter()
+        .filter_map(|sides| {
+            let [one, other] = sides else { return None };
+            Some((skew(rest, corners_of(one, other))?, sides))
+        })
+        .collect();
+    // Stable, so pairs that are equally rectangular keep the order of their edges.
+    candidates.sort_by(|(p, _), (q, _)| p.total_cmp(q));
+    let mut cells = Cells { corners: Vec::new(), of_triangle: vec![None; triangles.len()] };
+    for (_, sides) in candidates {
+        let pair = [sides[0].triangle as usize, sides[1].triangle as usize];
+        if pair.iter().all(|&t| cells.of_triangle[t].is_none()) {
+            for t in pair {
+                cells.of_triangle[t] = Some(cells.corners.len() as u32);
+            }
+            cells.corners.push(corners_of(&sides[0], &sides[1]));
+        }
+    }
+    cells
+}
+
+/// The quad of two triangles that share an edge: the edge's ends are its first and third corner.
+fn corners_of(one: &HalfEdge, other: &HalfEdge) -> [u32; 4] {
+    [one.a, one.opposite, one.b, other.opposite]
+}
+
+/// How far a quad is from a rectangle: the largest |cos| of its corners, rounded so that noise doesn't rank. None for a
+/// quad that is too far, folded or degenerate.
+fn skew(rest: &[Vec3], corners: [u32; 4]) -> Option<f32> {
+    let p = corners.map(|i| rest[i as usize]);
+    let normal = |a: Vec3, b: Vec3, c: Vec3| (b - a).cross(c - a).normalize_or_zero();
+    if normal(p[0], p[1], p[2]).dot(normal(p[0], p[2], p[3])) < LEAST_FLATNESS {
+        return None;
+    }
+    let cosine = |i: usize| {
+        let (before, after) = (p[(i + 3) % 4] - p[i], p[(i + 1) % 4] - p[i]);
+        before.normalize_or_zero().dot(after.normalize_or_zero()).abs()
+    };
+    let skew = (0..4).map(cosine).fold(0.0, f32::max);
+    (skew <= MOST_COSINE).then_some((skew * 1e3).round())
+}

@@ -1,0 +1,239 @@
+//! Waits for meshes, makes cloth of them, and says how it went.
+
+use std::sync::{Arc, Weak};
+
+use bevy::{
+    asset::LoadState,
+    ecs::query::QueryData,
+    math::{Affine3A, Vec3A},
+    platform::collections::{HashMap, HashSet},
+    prelude::*,
+};
+
+use super::{particles_of, source::SourceMesh};
+use crate::{
+    anchor::{self, Poses},
+    cloth::{Cloth, ClothFailed, ClothReady, ClothReset, ClothStatus, ResetCause},
+    draw::{
+        binding::Binding,
+        mesh::{ClothMesh, Shape},
+    },
+    error::ClothError,
+    fabric::Fabric,
+    pins::{Pins, targets_by_particle},
+    solver::{Particles, Topology},
+    state::ClothState,
+};
+
+/// All that building a cloth looks at.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct Candidate {
+    entity: Entity,
+    mesh: &'static mut Mesh3d,
+    cloth: Ref<'static, Cloth>,
+    fabric: Ref<'static, Fabric>,
+    pins: Ref<'static, Pins>,
+    transform: Ref<'static, GlobalTransform>,
+    status: &'static mut ClothStatus,
+    state: &'static mut ClothState,
+    own_mesh: Option<&'static ClothMesh>,
+}
+
+/// Builds what waits, rebuilds what has changed, tries again what failed.
+pub(crate) fn build_cloths(
+    mut commands: Commands,
+    mut candidates: Query<Candidate>,
+    without_mesh: Query<Entity, (Added<Cloth>, Without<Mesh3d>)>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut mesh_events: MessageReader<AssetEvent<Mesh>>,
+    assets: Option<Res<AssetServer>>,
+    mut cache: ResMut<TopologyCache>,
+    poses: Poses,
+) {
+    for entity in &without_mesh {
+        warn!(
+            "cloth {entity} has no Mesh3d and waits for one; insert Cloth next to the Mesh3d, in a loaded scene on the \
+             entity that carries it"
+        );
+    }
+    let changed: HashSet<AssetId<Mesh>> = mesh_events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Modified { id } => Some(*id),
+            _ => None,
+        })
+        .collect();
+    cache.forget(&changed);
+    for mut candidate in &mut candidates {
+        let source = candidate.source();
+        let Some(cause) = candidate.cause(&source, &changed) else { continue };
+        let built = match meshes.get(&source) {
+            Some(mesh) => candidate.build(mesh, &source, &mut cache, &poses),
+            None => match assets.as_ref().map(|assets| assets.load_state(&source)) {
+                Some(LoadState::Failed(error)) => Err(ClothError::NotLoaded { reason: error.to_string() }),
+                // Not there yet: try again in the next frame.
+                _ => continue,
+            },
+        };
+        match built {
+            Ok(built) => candidate.accept(built, cause, source, &mut meshes, &mut commands),
+            Err(error) => candidate.reject(error, &mut commands),
+        }
+    }
+}
+
+/// Why a cloth is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Cause {
+    First,
+    Again(ResetCause),
+}
+
+/// A cloth that is ready to take its place.
+struct Built {
+    state: ClothState,
+    binding: Arc<Binding>,
+    mesh: Mesh,
+    positions: Vec<[f32; 3]>,
+}
+
+impl CandidateItem<'_, '_> {
+    /// The mesh that the cloth is made from: the user's, not the copy that is drawn.
+    fn source(&self) -> Handle<Mesh> {
+        match self.own_mesh {
+            Some(own) if own.drawn == self.mesh.0 => own.source.clone(),
+            _ => self.mesh.0.clone(),
+        }
+    }
+
+    /// Why the cloth has to be built now, if it has to.
+    fn cause(&self, source: &Handle<Mesh>, changed: &HashSet<AssetId<Mesh>>) -> Option<Cause> {
+        let mesh_changed = changed.contains(&source.id()) || self.own_mesh.is_some_and(|own| own.source != *source);
+        let touched = self.cloth.is_changed()
+            || self.fabric.is_changed()
+            || self.pins.is_changed()
+            || self.transform.is_changed()
+            || self.mesh.is_changed();
+        match &*self.status {
+            _ if self.state.requests.reset => Some(Cause::Again(ResetCause::Requested)),
+            ClothStatus::Waiting => Some(Cause::First),
+            ClothStatus::Failed(_) => (touched || mesh_changed).then_some(Cause::First),
+            ClothStatus::Ready => mesh_changed.then_some(Cause::Again(ResetCause::Rebuilt)),
+        }
+    }
+
+    fn build(
+        &self,
+        mesh: &Mesh,
+        source: &Handle<Mesh>,
+        cache: &mut TopologyCache,
+        poses: &Poses,
+    ) -> Result<Built, ClothError> {
+        self.cloth.validate()?;
+        let material = self.fabric.material()?;
+        let pose = poses
+            .compute_global_transform(self.entity)
+            .map(|global| global.affine())
+            .ok()
+            .filter(anchor::is_invertible)
+            .ok_or(ClothError::FlatTransform)?;
+        let plan = cache.plan(source.id(), mesh, &pose)?;
+        let targets = targets_by_particle(&self.pins, mesh, &plan.binding.particle_of_vertex, &plan.topology)?;
+        let rest: Vec<Vec3A> = plan.topology.rest.iter().copied().map(Vec3A::from).collect();
+        let mut state = ClothState {
+            step_start: rest.clone(),
+            particles: Particles::at_rest(rest, &plan.topology, &material),
+            origin: pose.translation.into(),
+            particle_of_vertex: plan.binding.particle_of_vertex.clone(),
+            topology: plan.topology,
+            settings: Cloth::clone(&self.cloth),
+            material: Some(material),
+            pose,
+            said: self.state.said,
+            // Goes on counting, so that what is drawn of the new cloth isn't taken for the old one's.
+            steps: self.state.steps + 1,
+            ..default()
+        };
+        anchor::hold(&mut state, &targets, self.entity, poses);
+        Ok(Built { state, binding: plan.binding, mesh: mesh.clone(), positions: plan.positions })
+    }
+
+    fn accept(
+        &mut self,
+        built: Built,
+        cause: Cause,
+        source: Handle<Mesh>,
+        meshes: &mut Assets<Mesh>,
+        commands: &mut Commands,
+    ) {
+        let entity = self.entity;
+        let drawn = match self.own_mesh {
+            // A rebuilt cloth keeps its own mesh, with new contents.
+            Some(own) if meshes.insert(own.drawn.id(), built.mesh.clone()).is_ok() => own.drawn.clone(),
+            _ => meshes.add(built.mesh),
+        };
+        *self.state = built.state;
+        *self.status = ClothStatus::Ready;
+        if self.mesh.0 != drawn {
+            self.mesh.0 = drawn.clone();
+        }
+        let shape = Shape::new(built.positions);
+        let own_mesh = ClothMesh { source, drawn, binding: built.binding, shape };
+        commands.entity(entity).try_insert(own_mesh);
+        match cause {
+            Cause::First => commands.trigger(ClothReady { entity }),
+            Cause::Again(cause) => commands.trigger(ClothReset { entity, cause }),
+        }
+    }
+
+    fn reject(&mut self, error: ClothError, commands: &mut Commands) {
+        self.state.requests.reset = false;
+        let failed = ClothStatus::Failed(error.clone());
+        if *self.status == failed {
+            return;
+        }
+        warn!("cloth {} can't be built: {error}", self.entity);
+        *self.status = failed;
+        commands.trigger(ClothFailed { entity: self.entity, error });
+    }
+}
+
+/// What all cloths of one mesh in one orientation and scale have in common.
+#[derive(Clone, Debug)]
+struct Plan {
+    topology: Arc<Topology>,
+    binding: Arc<Binding>,
+    /// Positions of the mesh's vertices.
+    positions: Vec<[f32; 3]>,
+}
+
+/// Plans of meshes that are in use, so that a hundred flags are worked out once.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct TopologyCache {
+    plans: HashMap<(AssetId<Mesh>, [u32; 9]), (Weak<Topology>, Weak<Binding>)>,
+}
+
+impl TopologyCache {
+    /// Drops the plans of meshes that have changed, and those that nobody uses.
+    fn forget(&mut self, changed: &HashSet<AssetId<Mesh>>) {
+        self.plans.retain(|(mesh, _), (topology, _)| topology.strong_count() > 0 && !changed.contains(mesh));
+    }
+
+    /// The plan for `mesh` under `pose`.
+    fn plan(&mut self, id: AssetId<Mesh>, mesh: &Mesh, pose: &Affine3A) -> Result<Plan, ClothError> {
+        let source = SourceMesh::read(mesh)?;
+        let positions = source.positions.iter().map(Vec3::to_array).collect();
+        let key = (id, pose.matrix3.to_cols_array().map(f32::to_bits));
+        if let Some((topology, binding)) = self.plans.get(&key)
+            && let (Some(topology), Some(binding)) = (topology.upgrade(), binding.upgrade())
+        {
+            return Ok(Plan { topology, binding, positions });
+        }
+        let (welded, topology) = particles_of(&source, pose.matrix3)?;
+        let topology = Arc::new(topology);
+        let binding = Arc::new(Binding::new(&source, &welded));
+        self.plans.insert(key, (Arc::downgrade(&topology), Arc::downgrade(&binding)));
+        Ok(Plan { topology, binding, positions })
+    }
+}

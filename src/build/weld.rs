@@ -1,0 +1,82 @@
+//! Which render vertices are one particle.
+//!
+//! A mesh repeats a vertex wherever its UVs or normals jump. Cloth must not come apart there, so vertices that share a
+//! position share a particle.
+
+use bevy::{math::IVec3, platform::collections::HashMap, prelude::*};
+
+/// Vertices nearer than this share of the mesh's size are one: exporters and generated seams round differently.
+const TOLERANCE: f32 = 1e-5;
+
+/// In [`Welded::particle_of_vertex`]: the vertex is in no triangle and isn't simulated.
+pub(crate) const NO_PARTICLE: u32 = u32::MAX;
+
+/// The particles of a mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Welded {
+    /// Particle of each vertex, or [`NO_PARTICLE`].
+    pub particle_of_vertex: Vec<u32>,
+    /// One vertex of each particle, the first.
+    pub vertex_of_particle: Vec<u32>,
+}
+
+/// Welds the vertices that `triangles` use. Particles are numbered in the order of their first vertex.
+pub(crate) fn weld(positions: &[Vec3], triangles: &[[u32; 3]]) -> Welded {
+    let mut used = vec![false; positions.len()];
+    for &vertex in triangles.as_flattened() {
+        used[vertex as usize] = true;
+    }
+    let cell_size = (size(positions) * TOLERANCE).max(f32::MIN_POSITIVE);
+    let mut particle_at: HashMap<IVec3, u32> = HashMap::default();
+    let mut welded = Welded { particle_of_vertex: vec![NO_PARTICLE; positions.len()], vertex_of_particle: Vec::new() };
+    for vertex in (0..positions.len()).filter(|&v| used[v]) {
+        let position = positions[vertex];
+        let cell = (position / cell_size).round().as_ivec3();
+        let near = neighbourhood(cell).find_map(|cell| {
+            let &particle = particle_at.get(&cell)?;
+            let first = positions[welded.vertex_of_particle[particle as usize] as usize];
+            (first.distance(position) <= cell_size).then_some(particle)
+        });
+        welded.particle_of_vertex[vertex] = near.unwrap_or_else(|| {
+            let particle = welded.vertex_of_particle.len() as u32;
+            welded.vertex_of_particle.push(vertex as u32);
+            particle_at.insert(cell, particle);
+            particle
+        });
+    }
+    welded
+}
+
+/// Diagonal of the box around `positions`.
+fn size(positions: &[Vec3]) -> f32 {
+    let low = positions.iter().fold(Vec3::INFINITY, |a, &b| a.min(b));
+    let high = positions.iter().fold(Vec3::NEG_INFINITY, |a, &b| a.max(b));
+    low.distance(high)
+}
+
+/// A cell and the 26 around it, itself first: positions that round to different cells can still be close.
+fn neighbourhood(cell: IVec3) -> impl Iterator<Item = IVec3> {
+    let steps = [0, -1, 1];
+    steps.into_iter().flat_map(move |x| {
+        steps.into_iter().flat_map(move |y| steps.into_iter().map(move |z| cell.saturating_add(IVec3::new(x, y, z))))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vertices_at_one_place_are_one_particle() {
+        let p = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + 1e-7, Vec3::Y, Vec3::ONE];
+        let welded = weld(&p, &[[0, 1, 2], [3, 5, 4]]);
+        assert_eq!(welded.particle_of_vertex, [0, 1, 2, 1, 2, 3]);
+        assert_eq!(welded.vertex_of_particle, [0, 1, 2, 5]);
+    }
+
+    #[test]
+    fn vertices_without_a_triangle_are_no_particle() {
+        let welded = weld(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z], &[[0, 1, 3]]);
+        assert_eq!(welded.particle_of_vertex, [0, 1, NO_PARTICLE, 2]);
+    }
+}

@@ -1,0 +1,175 @@
+//! Obstacles: entities that cloth drapes over.
+
+use bevy::{
+    math::{Affine3A, Isometry3d, Vec3A, primitives::InfinitePlane3d},
+    prelude::*,
+};
+
+use crate::{
+    anchor::Poses,
+    solver::{Obstacle, Shape},
+};
+
+/// An obstacle for cloth, moved by its `Transform`.
+///
+/// Made from one of Bevy's primitives: `ClothCollider::from(Sphere::new(0.3))`; also from a `Cuboid`, a `Capsule3d`, a
+/// `Cylinder` and, for a ground, an `InfinitePlane3d`, behind which all is solid. The transform's scale applies; where
+/// it isn't uniform, round shapes take its largest factor.
+///
+/// A collider of no size, or with a transform that isn't finite, is left out, with one warning.
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[require(Transform, ColliderMemory)]
+pub struct ClothCollider {
+    /// Its shape, m, in the entity's own space.
+    pub shape: Shape,
+    /// Factor on the friction of the cloth that touches it, no unit. 1 by default, 0 for ice.
+    pub friction: f32,
+    /// Layers that it is in, one a bit. Cloth meets it where this has a bit in common with the cloth's mask.
+    pub layers: u32,
+}
+
+impl Default for ClothCollider {
+    /// A ball of half a metre radius.
+    fn default() -> Self {
+        Sphere::default().into()
+    }
+}
+
+impl From<Shape> for ClothCollider {
+    fn from(shape: Shape) -> Self {
+        Self { shape, friction: 1.0, layers: 1 }
+    }
+}
+
+impl From<Sphere> for ClothCollider {
+    fn from(sphere: Sphere) -> Self {
+        Shape::Sphere(sphere).into()
+    }
+}
+
+impl From<Cuboid> for ClothCollider {
+    fn from(cuboid: Cuboid) -> Self {
+        Shape::Cuboid(cuboid).into()
+    }
+}
+
+impl From<Capsule3d> for ClothCollider {
+    fn from(capsule: Capsule3d) -> Self {
+        Shape::Capsule(capsule).into()
+    }
+}
+
+impl From<Cylinder> for ClothCollider {
+    fn from(cylinder: Cylinder) -> Self {
+        Shape::Cylinder(cylinder).into()
+    }
+}
+
+impl From<InfinitePlane3d> for ClothCollider {
+    fn from(plane: InfinitePlane3d) -> Self {
+        Shape::HalfSpace(plane).into()
+    }
+}
+
+impl ClothCollider {
+    /// The same, in other layers.
+    pub fn in_layers(mut self, layers: u32) -> Self {
+        self.layers = layers;
+        self
+    }
+
+    /// Shape and world pose under a transform. None where nothing solid is left.
+    fn placed(&self, pose: Affine3A) -> Option<(Shape, Isometry3d)> {
+        let (scale, rotation, translation) = pose.to_scale_rotation_translation();
+        let shape = scaled(self.shape, scale.abs())?;
+        let pose = Isometry3d::new(translation, rotation);
+        (pose.translation.is_finite() && pose.rotation.is_finite() && self.friction >= 0.0).then_some((shape, pose))
+    }
+}
+
+/// A shape under a scale of no negative factors; none where it has no size or none that is finite.
+fn scaled(shape: Shape, scale: Vec3) -> Option<Shape> {
+    let around = scale.max_element();
+    let across = scale.x.max(scale.z);
+    let solid = |sizes: &[f32]| sizes.iter().all(|&size| size.is_finite() && size > 0.0);
+    let (shape, is_solid) = match shape {
+        Shape::Sphere(Sphere { radius }) => {
+            let radius = radius * around;
+            (Shape::Sphere(Sphere { radius }), solid(&[radius]))
+        }
+        Shape::Cuboid(Cuboid { half_size }) => {
+            let half_size = half_size * scale;
+            (Shape::Cuboid(Cuboid { half_size }), solid(&half_size.to_array()))
+        }
+        Shape::Capsule(Capsule3d { radius, half_length }) => {
+            let (radius, half_length) = (radius * across, half_length * scale.y);
+            let is_solid = solid(&[radius]) && half_length.is_finite() && half_length >= 0.0;
+            (Shape::Capsule(Capsule3d { radius, half_length }), is_solid)
+        }
+        Shape::Cylinder(Cylinder { radius, half_height }) => {
+            let (radius, half_height) = (radius * across, half_height * scale.y);
+            (Shape::Cylinder(Cylinder { radius, half_height }), solid(&[radius, half_height]))
+        }
+        Shape::HalfSpace(_) => (shape, solid(&[around])),
+    };
+    is_solid.then_some(shape)
+}
+
+/// What is remembered of a collider from step to step.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub(crate) struct ColliderMemory {
+    /// World pose at the end of the latest step.
+    pose: Option<Isometry3d>,
+    /// The collider was left out and a warning said so.
+    warned: bool,
+}
+
+/// All obstacles of the coming step, in world space.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Obstacles {
+    list: Vec<(Entity, u32, Obstacle)>,
+}
+
+impl Obstacles {
+    /// Writes the obstacles that `mask` selects into `near`, relative to `origin`.
+    pub fn around(&self, origin: Vec3, mask: u32, near: &mut Vec<Obstacle>) {
+        let origin = Vec3A::from(origin);
+        let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - origin, pose.rotation);
+        near.clear();
+        near.extend(self.list.iter().filter(|&&(_, layers, _)| layers & mask != 0).map(|&(_, _, obstacle)| Obstacle {
+            start: relative(obstacle.start),
+            end: relative(obstacle.end),
+            ..obstacle
+        }));
+    }
+}
+
+/// Reads all colliders and how they have moved since the latest step.
+pub(crate) fn gather_obstacles(
+    mut colliders: Query<(Entity, &ClothCollider, &mut ColliderMemory)>,
+    mut obstacles: ResMut<Obstacles>,
+    poses: Poses,
+) {
+    obstacles.list.clear();
+    for (entity, collider, mut memory) in &mut colliders {
+        let pose = poses.compute_global_transform(entity);
+        let placed = pose.ok().and_then(|pose| collider.placed(pose.affine()));
+        let Some((shape, end)) = placed else {
+            if !memory.warned {
+                warn!(
+                    "collider {entity} is left out: give its shape, friction and transform finite values, and its \
+                     shape a size greater than zero"
+                );
+            }
+            *memory = ColliderMemory { pose: None, warned: true };
+            continue;
+        };
+        let start = memory.pose.unwrap_or(end);
+        *memory = ColliderMemory { pose: Some(end), warned: false };
+        let obstacle = Obstacle { shape, start, end, friction: collider.friction };
+        obstacles.list.push((entity, collider.layers, obstacle));
+    }
+    // Contact comes out the same whatever order the world keeps its entities in.
+    obstacles.list.sort_unstable_by_key(|&(entity, ..)| entity);
+}

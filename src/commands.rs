@@ -1,0 +1,83 @@
+//! What a game can ask of a cloth at any time.
+
+use bevy::{ecs::system::EntityCommands, prelude::*};
+
+use crate::{
+    cloth::{Cloth, ClothStatus},
+    draw::mesh::{self, ClothMesh},
+    pins::{PinGroup, PinTarget, Pins},
+    state::ClothState,
+};
+
+/// Commands for an entity with a [`Cloth`]. On any other entity they do nothing.
+///
+/// ```
+/// # use bevy::prelude::*;
+/// # use bevy_drape::prelude::*;
+/// fn let_go(mut commands: Commands, flag: Single<Entity, With<Cloth>>) {
+///     commands.entity(*flag).unpin_cloth(Pins::edge(ClothEdge::Left));
+/// }
+/// ```
+pub trait ClothCommands {
+    /// Puts the cloth back into its rest shape at its entity's present transform and scale, at rest. Then
+    /// [`ClothReset`](crate::prelude::ClothReset) is sent.
+    fn reset_cloth(&mut self) -> &mut Self;
+
+    /// Pins more vertices, where they are now.
+    fn pin_cloth(&mut self, pins: Pins) -> &mut Self;
+
+    /// Unpins vertices: all that `pins` choose, whatever it says that they be fixed to.
+    fn unpin_cloth(&mut self, pins: Pins) -> &mut Self;
+
+    /// Moves the entity to `transform` and the cloth rigidly with it, as if the world had moved: nothing is dragged
+    /// through the space between. Its world pins come along; pins to other entities don't.
+    fn teleport_cloth(&mut self, transform: Transform) -> &mut Self;
+}
+
+impl ClothCommands for EntityCommands<'_> {
+    fn reset_cloth(&mut self) -> &mut Self {
+        self.queue_silenced(|mut entity: EntityWorldMut| {
+            if let Some(mut state) = entity.get_mut::<ClothState>() {
+                state.requests.reset = true;
+            }
+        })
+    }
+
+    fn pin_cloth(&mut self, pins: Pins) -> &mut Self {
+        self.queue_silenced(|mut entity: EntityWorldMut| {
+            if let Some(mut own) = entity.get_mut::<Pins>() {
+                own.groups.extend(pins.groups);
+            }
+        })
+    }
+
+    fn unpin_cloth(&mut self, pins: Pins) -> &mut Self {
+        let free = |group: PinGroup| PinGroup { to: PinTarget::Free, ..group };
+        let groups = pins.groups.into_iter().map(free).collect();
+        self.pin_cloth(Pins { groups })
+    }
+
+    fn teleport_cloth(&mut self, transform: Transform) -> &mut Self {
+        self.queue_silenced(move |mut entity: EntityWorldMut| {
+            if let Some(mut place) = entity.get_mut::<Transform>() {
+                *place = transform;
+            }
+            if let Some(mut state) = entity.get_mut::<ClothState>() {
+                state.requests.teleport = true;
+            }
+        })
+    }
+}
+
+/// Leaves a plain mesh behind where [`Cloth`] is removed: as it was drawn last, with bounds that are its own again.
+pub(crate) fn on_cloth_removed(
+    removed: On<Remove, Cloth>,
+    mut commands: Commands,
+    cloths: Query<&ClothMesh>,
+    mut meshes: ResMut<Assets<Mesh>>,
+) {
+    if let Ok(cloth) = cloths.get(removed.entity) {
+        mesh::release(meshes.get_mut(&cloth.drawn));
+    }
+    commands.entity(removed.entity).try_remove::<(ClothMesh, ClothState, ClothStatus)>();
+}

@@ -1,0 +1,5 @@
+//! The state becomes pixels: interpolated particles, normals and tangents, the mesh.
+
+pub(crate) mod binding;
+pub(crate) mod mesh;
+pub(crate) mod shading;

@@ -1,0 +1,138 @@
+//! The only place that writes a cloth's mesh: at most once per rendered frame, and not at all while nothing moves.
+
+use std::sync::Arc;
+
+use bevy::{
+    asset::AssetMut,
+    math::{Affine3A, Vec3A, bounding::Aabb3d},
+    mesh::{MeshVertexAttribute, VertexAttributeValues},
+    prelude::*,
+};
+
+use super::{binding::Binding, shading};
+use crate::{anchor::is_invertible, build::weld::NO_PARTICLE, schedule::ClothClock, state::ClothState};
+
+/// The meshes of a cloth: the one that it was made from, and its own copy, which is drawn.
+#[derive(Component, Clone, Debug)]
+pub(crate) struct ClothMesh {
+    /// The user's mesh: never written, so its shape stays the rest shape.
+    pub source: Handle<Mesh>,
+    /// The cloth's own mesh, in the entity's `Mesh3d`.
+    pub drawn: Handle<Mesh>,
+    /// From particles to vertices.
+    pub binding: Arc<Binding>,
+    /// What the vertices are to become.
+    pub shape: Shape,
+}
+
+/// Vertex data of a deformed mesh, in its entity's own space.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shape {
+    /// Position of each vertex. Those in no triangle keep the place that they have here.
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    tangents: Vec<[f32; 4]>,
+    bounds: Option<Aabb3d>,
+    /// What the data was computed from; the same again needs no work.
+    key: Option<(u64, f32, Affine3A)>,
+    /// The mesh asset doesn't have the data yet.
+    is_new: bool,
+    particles: Vec<Vec3A>,
+    sums: Vec<Vec3A>,
+}
+
+/// Computes what every cloth looks like at the moment that is drawn.
+pub(crate) fn shape_cloths(mut cloths: Query<(&ClothState, &mut ClothMesh, &GlobalTransform)>, clock: ClothClock) {
+    let now = clock.overstep();
+    crate::simulate::for_each(&mut cloths, clock.parallel(), |(state, mut mesh, transform)| {
+        let ClothMesh { binding, shape, .. } = &mut *mesh;
+        shape.update(state, binding, transform.affine(), now);
+    });
+}
+
+/// Writes what has changed into the mesh assets.
+pub(crate) fn write_meshes(mut cloths: Query<&mut ClothMesh>, mut meshes: ResMut<Assets<Mesh>>) {
+    for mut cloth in &mut cloths {
+        if cloth.shape.is_new
+            && let Some(mesh) = meshes.get_mut(&cloth.drawn)
+        {
+            cloth.shape.is_new = false;
+            cloth.shape.write(mesh.into_inner());
+        }
+    }
+}
+
+/// Lets go of a mesh whose entity is no longer cloth: from now on its bounds follow from its positions again.
+pub(crate) fn release(mesh: Option<AssetMut<Mesh>>) {
+    if let Some(mesh) = mesh {
+        mesh.into_inner().final_aabb = None;
+    }
+}
+
+impl Shape {
+    /// The vertices of a mesh before the first step.
+    pub fn new(positions: Vec<[f32; 3]>) -> Self {
+        Self { positions, ..default() }
+    }
+
+    /// Interpolates the latest step at `now` (0..=1) and shades it. `pose` takes the mesh to the world.
+    fn update(&mut self, state: &ClothState, binding: &Binding, pose: Affine3A, now: f32) {
+        let key = (state.steps, now, pose);
+        if state.particles.is_empty() || self.key == Some(key) || !is_invertible(&pose) {
+            return;
+        }
+        self.key = Some(key);
+        self.is_new = true;
+        // Differences first: far from the world's origin, only they have precision left.
+        let to_local = pose.matrix3.inverse();
+        let offset = Vec3A::from(state.origin) - pose.translation;
+        let steps = state.step_start.iter().zip(&state.particles.position);
+        self.particles.clear();
+        self.particles.extend(steps.map(|(start, &end)| to_local * (start.lerp(end, now) + offset)));
+        for (place, &particle) in self.positions.iter_mut().zip(&*binding.particle_of_vertex) {
+            if particle != NO_PARTICLE {
+                *place = self.particles[particle as usize].to_array();
+            }
+        }
+        self.bounds = bounds(&self.particles);
+        self.shade(binding);
+    }
+
+    fn shade(&mut self, binding: &Binding) {
+        let Some(groups) = &binding.normals else { return };
+        shading::normals(binding, groups, &self.positions, &mut self.sums);
+        self.normals.clear();
+        self.normals.extend(groups.of_vertex.iter().map(|&g| self.sums[g as usize].to_array()));
+        if let Some(tangents) = &binding.tangents {
+            let Self { positions, normals, sums, tangents: shown, .. } = self;
+            shading::tangents(binding, tangents, positions, normals, sums, shown);
+        }
+    }
+
+    fn write(&self, mesh: &mut Mesh) {
+        if let Some(VertexAttributeValues::Float32x3(values)) = values(mesh, Mesh::ATTRIBUTE_POSITION) {
+            values.clone_from(&self.positions);
+        }
+        if let Some(VertexAttributeValues::Float32x3(values)) = values(mesh, Mesh::ATTRIBUTE_NORMAL) {
+            values.clone_from(&self.normals);
+        }
+        if let Some(VertexAttributeValues::Float32x4(values)) = values(mesh, Mesh::ATTRIBUTE_TANGENT)
+            && !self.tangents.is_empty()
+        {
+            values.clone_from(&self.tangents);
+        }
+        // Spares Bevy two scans of all positions, and keeps the cloth from being culled by where it was.
+        mesh.final_aabb = self.bounds;
+    }
+}
+
+fn values(mesh: &mut Mesh, attribute: MeshVertexAttribute) -> Option<&mut VertexAttributeValues> {
+    mesh.try_attribute_mut(attribute).ok()
+}
+
+/// The box around `points`; none around no point.
+fn bounds(points: &[Vec3A]) -> Option<Aabb3d> {
+    let low = points.iter().copied().reduce(Vec3A::min)?;
+    let high = points.iter().copied().reduce(Vec3A::max)?;
+    Some(Aabb3d::from_min_max(low, high))
+}

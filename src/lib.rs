@@ -1,0 +1,73 @@
+//! Real-time cloth for the Bevy game engine, in real units.
+//!
+//! Add [`ClothPlugin`](prelude::ClothPlugin), put a [`Cloth`](prelude::Cloth) next to a `Mesh3d`, and that mesh hangs,
+//! blows in the [`Wind`](prelude::Wind) and drapes over every [`ClothCollider`](prelude::ClothCollider).
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_drape::prelude::*;
+//!
+//! fn setup(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>) {
+//!     commands.spawn((
+//!         Mesh3d(meshes.add(ClothGrid::new(1.0, 1.0, 32, 32))),
+//!         Cloth::default(),
+//!         Fabric { density: 0.1, ..default() },
+//!         Pins::edge_corners(ClothEdge::Top),
+//!         Transform::from_xyz(0.0, 2.0, 0.0),
+//!     ));
+//!     commands.spawn(Wind { velocity: Vec3::Z * 4.0, ..default() });
+//! }
+//! ```
+//!
+//! How a mesh becomes what is drawn, and where to look for it:
+//!
+//! ```text
+//! mesh -> build -> particles and topology
+//!                           |
+//!   settings, pins, obstacles, winds -> [ forces -> springs -> tethers -> contact ] x substeps -> state
+//!                                                                                                   |
+//!                             renderer <- mesh <- normals, tangents <- interpolation <- draw <------+
+//! ```
+//!
+//! All quantities are in SI units: m, kg, s, N. The solver is in [`solver`] and can be used without Bevy's ECS.
+
+#![warn(missing_docs)]
+
+mod cloth;
+mod error;
+mod fabric;
+mod grid;
+mod state;
+
+pub mod build;
+mod pins;
+
+mod anchor;
+mod collider;
+mod settings;
+mod simulate;
+pub mod solver;
+mod wind;
+
+mod draw;
+
+mod commands;
+mod schedule;
+
+pub use error::ClothError;
+
+/// What a game needs.
+pub mod prelude {
+    pub use crate::{
+        cloth::{Cloth, ClothFailed, ClothGravity, ClothReady, ClothReset, ClothSolver, ClothStatus, ResetCause},
+        collider::ClothCollider,
+        commands::ClothCommands,
+        error::ClothError,
+        fabric::Fabric,
+        grid::ClothGrid,
+        pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
+        schedule::{ClothPlugin, ClothSystems},
+        state::ClothState,
+        wind::{Wind, WindShape},
+    };
+}

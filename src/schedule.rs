@@ -1,0 +1,171 @@
+//! When everything happens. The only place that orders systems.
+
+use bevy::{
+    app::FixedMain,
+    asset::AssetEventSystems,
+    ecs::{
+        schedule::{InternedScheduleLabel, ScheduleLabel},
+        system::SystemParam,
+    },
+    prelude::*,
+};
+
+use crate::{anchor, build, cloth, collider, commands, draw, settings, simulate, wind};
+
+/// The stages of a cloth's frame, in their order. Games order their systems around them.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ClothSystems {
+    /// `PreUpdate`: meshes become cloth, failed ones are tried again, resets are done.
+    Prepare,
+    /// The plugin's schedule: settings, pins, obstacles and winds are read. Move those before it.
+    Gather,
+    /// The plugin's schedule: all cloths take one step. Add forces before it.
+    Simulate,
+    /// The plugin's schedule: events of the step are sent. Read positions after it.
+    Finalize,
+    /// `PostUpdate`, after transforms have been propagated: cloths are interpolated, shaded and written to their
+    /// meshes.
+    Draw,
+}
+
+/// Real-time cloth for all entities with a [`Cloth`](crate::prelude::Cloth).
+///
+/// Needs Bevy's time, asset, mesh and transform plugins, which `DefaultPlugins` has; without a window, `MinimalPlugins`,
+/// `TransformPlugin`, `AssetPlugin` and `MeshPlugin`. With less it does nothing and says what is missing.
+///
+/// ```
+/// # use bevy::prelude::*;
+/// # use bevy_drape::prelude::*;
+/// App::new().add_plugins((MinimalPlugins, ClothPlugin::new(FixedUpdate)));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct ClothPlugin {
+    schedule: InternedScheduleLabel,
+    parallel: bool,
+}
+
+impl Default for ClothPlugin {
+    /// Steps in `FixedPostUpdate`, several cloths at a time.
+    fn default() -> Self {
+        Self::new(FixedPostUpdate)
+    }
+}
+
+impl ClothPlugin {
+    /// Steps once each time that `schedule` runs, by the time that the `Time` resource gives there.
+    ///
+    /// In one of Bevy's fixed schedules, what is drawn is interpolated between steps. In any other, the latest step is
+    /// drawn, and the motion depends on the frame rate as far as the time steps do.
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self { schedule: schedule.intern(), parallel: true }
+    }
+
+    /// Steps all cloths on one thread, with the same bits as on several.
+    pub fn single_threaded(mut self) -> Self {
+        self.parallel = false;
+        self
+    }
+
+    fn is_fixed(&self) -> bool {
+        [
+            FixedFirst.intern(),
+            FixedPreUpdate.intern(),
+            FixedUpdate.intern(),
+            FixedPostUpdate.intern(),
+            FixedLast.intern(),
+            FixedMain.intern(),
+        ]
+        .contains(&self.schedule)
+    }
+}
+
+impl Plugin for ClothPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<cloth::ClothGravity>()
+            .init_resource::<collider::Obstacles>()
+            .init_resource::<wind::Winds>()
+            .init_resource::<build::system::TopologyCache>()
+            .insert_resource(ClothRun { fixed: self.is_fixed(), parallel: self.parallel });
+    }
+
+    /// Adds the systems once all plugins are there: only then is it known whether something is missing.
+    fn finish(&self, app: &mut App) {
+        let missing = missing_plugins(app);
+        if !missing.is_empty() {
+            warn!("ClothPlugin does nothing: it needs {}; add them to the app", missing.join(", "));
+            return;
+        }
+        app.configure_sets(
+            self.schedule,
+            (ClothSystems::Gather, ClothSystems::Simulate, ClothSystems::Finalize).chain(),
+        )
+        .configure_sets(PostUpdate, ClothSystems::Draw.after(TransformSystems::Propagate).before(AssetEventSystems))
+        .add_systems(PreUpdate, build::system::build_cloths.in_set(ClothSystems::Prepare))
+        .add_systems(
+            self.schedule,
+            (
+                (
+                    settings::update_settings,
+                    anchor::update_pins,
+                    anchor::follow_targets,
+                    collider::gather_obstacles,
+                    wind::gather_winds,
+                )
+                    .chain()
+                    .in_set(ClothSystems::Gather),
+                simulate::step_cloths.in_set(ClothSystems::Simulate),
+                simulate::report_steps.in_set(ClothSystems::Finalize),
+            ),
+        )
+        .add_systems(
+            PostUpdate,
+            (draw::mesh::shape_cloths, draw::mesh::write_meshes).chain().in_set(ClothSystems::Draw),
+        )
+        .add_observer(commands::on_cloth_removed);
+    }
+}
+
+/// The plugins without which the systems couldn't run.
+fn missing_plugins(app: &App) -> Vec<&'static str> {
+    let world = app.world();
+    let mut missing = Vec::new();
+    if !world.contains_resource::<Time>() {
+        missing.push("TimePlugin (in MinimalPlugins)");
+    }
+    if !app.is_plugin_added::<TransformPlugin>() {
+        missing.push("TransformPlugin");
+    }
+    if !world.contains_resource::<Assets<Mesh>>() {
+        missing.push("AssetPlugin and MeshPlugin");
+    }
+    missing
+}
+
+/// How the plugin was set up.
+#[derive(Resource, Clone, Copy, Debug)]
+pub(crate) struct ClothRun {
+    fixed: bool,
+    pub parallel: bool,
+}
+
+/// Where the drawn moment lies within the latest step.
+#[derive(SystemParam)]
+pub(crate) struct ClothClock<'w> {
+    run: Res<'w, ClothRun>,
+    fixed: Option<Res<'w, Time<Fixed>>>,
+}
+
+impl ClothClock<'_> {
+    /// Share of the latest step that has passed, 0..=1.
+    pub fn overstep(&self) -> f32 {
+        match &self.fixed {
+            Some(time) if self.run.fixed => time.overstep_fraction().clamp(0.0, 1.0),
+            _ => 1.0,
+        }
+    }
+
+    /// Whether cloths may be worked on side by side.
+    pub fn parallel(&self) -> bool {
+        self.run.parallel
+    }
+}

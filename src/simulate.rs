@@ -1,0 +1,117 @@
+//! One step of every cloth: what was gathered goes in, the new state comes out.
+
+use bevy::{
+    ecs::{
+        batching::BatchingStrategy,
+        query::{IterQueryData, QueryFilter},
+    },
+    math::Vec3A,
+    prelude::*,
+    tasks::ComputeTaskPool,
+};
+
+use crate::{
+    cloth::{Cloth, ClothGravity, ClothReset, ClothSolver, ClothStatus, ResetCause},
+    collider::Obstacles,
+    schedule::ClothRun,
+    solver::{self, StepContext},
+    state::{ClothState, Work},
+    wind::Winds,
+};
+
+/// Steps all cloths, several at a time: each reads what is shared and writes only itself, so the order doesn't matter.
+pub(crate) fn step_cloths(
+    mut cloths: Query<(&ClothStatus, &mut ClothState)>,
+    run: Res<ClothRun>,
+    time: Res<Time>,
+    gravity: Res<ClothGravity>,
+    obstacles: Res<Obstacles>,
+    winds: Res<Winds>,
+) {
+    for_each(&mut cloths, run.parallel, |(status, mut state)| {
+        if *status == ClothStatus::Ready {
+            step_cloth(&mut state, &time, gravity.0, &obstacles, &winds);
+        }
+    });
+}
+
+/// Visits all matches of a query, side by side on the task pool where there is one.
+pub(crate) fn for_each<D, F>(
+    query: &mut Query<D, F>,
+    parallel: bool,
+    visit: impl Fn(D::Item<'_, '_>) + Send + Sync + Clone,
+) where
+    D: IterQueryData,
+    F: QueryFilter,
+{
+    if parallel && ComputeTaskPool::try_get().is_some() {
+        // A cloth is much work: batches of one, so that no thread waits for another's batch.
+        query.par_iter_mut().batching_strategy(BatchingStrategy::fixed(1)).for_each(visit);
+    } else {
+        query.iter_mut().for_each(visit);
+    }
+}
+
+fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Obstacles, winds: &Winds) {
+    let Some(material) = state.material else { return };
+    let Cloth { solver, substeps, max_substeps, gravity_scale, .. } = state.settings;
+    let Work { anchors, obstacles: near, winds: felt, scratch, recovered } = &mut state.work;
+    obstacles.around(state.origin, state.settings.collision_mask, near);
+    winds.around(state.origin, felt);
+    let ctx = StepContext {
+        dt: time.delta_secs(),
+        method: solver.into(),
+        substeps,
+        max_substeps,
+        material,
+        gravity: (gravity * gravity_scale).into(),
+        anchors,
+        tethers: if state.settings.tether_slack.is_some() { &state.tethers } else { &[] },
+        tether_slack: state.settings.tether_slack.unwrap_or_default(),
+        obstacles: near,
+        fluid_density: state.settings.fluid_density,
+        winds: felt,
+        time: time.elapsed_secs(),
+    };
+    state.step_start.clone_from(&state.particles.position);
+    state.report = Some(solver::step(&mut state.particles, &state.topology, &ctx, scratch));
+    state.particles.force.fill(Vec3A::ZERO);
+    state.steps += 1;
+    *recovered = !state.particles.is_finite();
+    if *recovered {
+        state.particles.position.clone_from(&state.step_start);
+        state.particles.velocity.fill(Vec3A::ZERO);
+    }
+}
+
+/// Tells of what went wrong in a step.
+pub(crate) fn report_steps(mut commands: Commands, mut cloths: Query<(Entity, &ClothStatus, &mut ClothState)>) {
+    for (entity, status, mut state) in &mut cloths {
+        if *status != ClothStatus::Ready {
+            continue;
+        }
+        if state.work.recovered {
+            commands.trigger(ClothReset { entity, cause: ResetCause::NotFinite });
+            if !state.said.not_finite {
+                state.said.not_finite = true;
+                warn!(
+                    "cloth {entity} left the finite numbers and was put back to its last finite pose: look for huge \
+                     forces, transforms or stiffness with too few substeps"
+                );
+            }
+        }
+        if let Some(report) = state.report
+            && report.stiffness_scale < 1.0
+            && state.settings.solver == ClothSolver::Explicit
+            && !state.said.softened
+        {
+            state.said.softened = true;
+            warn!(
+                "cloth {entity} is too stiff for {} substeps of the explicit solver: it runs with {:.1} % of its \
+                 stiffness and damping; raise Cloth::max_substeps, lower the stiffness or use ClothSolver::Xpbd",
+                report.substeps,
+                report.stiffness_scale * 100.0
+            );
+        }
+    }
+}

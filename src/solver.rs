@@ -1,0 +1,28 @@
+//! The simulation of one cloth: plain data in, plain data out, no ECS.
+//!
+//! Everything here is in SI units and relative to one origin per cloth, so `f32` keeps its precision however far the
+//! cloth is from the world's origin. [`step()`] is the whole of it; the other modules are what it is made of, in the
+//! order in which a step uses them.
+
+pub mod context;
+pub mod material;
+pub mod particles;
+pub mod scratch;
+pub mod topology;
+
+mod step;
+
+pub mod constraint;
+pub mod contact;
+pub mod explicit;
+pub mod force;
+
+pub use constraint::tether::Tether;
+pub use contact::{Obstacle, Shape};
+pub use context::{Anchor, Method, StepContext, StepReport};
+pub use force::wind::{WindRegion, WindSource};
+pub use material::{Material, SpringConstants};
+pub use particles::Particles;
+pub use scratch::Scratch;
+pub use step::{MAX_TIME_STEP, step};
+pub use topology::{Spring, SpringBatch, SpringKind, Topology};

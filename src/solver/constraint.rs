@@ -1,0 +1,5 @@
+//! What holds particles together: each constraint moves positions, once a substep.
+
+pub mod anchor;
+pub mod spring;
+pub mod tether;

@@ -1,0 +1,183 @@
+//! Contact: particles stay outside of obstacles, slide on them with friction, and let go without sticking.
+//!
+//! Particles are projected once a substep, as its last act, so that none ends a step inside an obstacle. Friction is
+//! Coulomb's at the level of positions: the way along the surface is cut by at most `friction` times the way that the
+//! contact pushed (Müller et al., "Position Based Dynamics", 2007, section 3.6, with the normal push in place of a
+//! damping constant). There is no restitution.
+
+use core::ops::Range;
+
+use bevy::math::{Isometry3d, Quat, Vec3A};
+
+use super::{Material, Particles};
+
+pub mod shape;
+
+pub use shape::{Shape, Surface};
+
+/// A solid that cloth can't enter, on its way over one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Obstacle {
+    /// Its shape.
+    pub shape: Shape,
+    /// Where it is when the step starts, m, relative to the cloth's origin.
+    pub start: Isometry3d,
+    /// Where it is when the step ends.
+    pub end: Isometry3d,
+    /// Factor on the cloth's friction, no unit.
+    pub friction: f32,
+}
+
+impl Obstacle {
+    /// Pose at the fraction `t` (0..=1) of the step.
+    fn pose(&self, t: f32) -> Isometry3d {
+        if self.start == self.end {
+            return self.end;
+        }
+        Isometry3d::new(
+            self.start.translation.lerp(self.end.translation, t),
+            // Normalised linear interpolation: no transcendental function, and exact enough within a step.
+            self.start.rotation.lerp(self.end.rotation, t),
+        )
+    }
+}
+
+/// Projects all free particles out of all obstacles within the part `span` (0..=1) of the step. Returns the number of
+/// contacts.
+pub fn project(particles: &mut Particles, obstacles: &[Obstacle], material: &Material, span: Range<f32>) -> u32 {
+    let mut contacts = 0;
+    for obstacle in obstacles {
+        let moving = MovingShape::new(obstacle, material.thickness, span.clone());
+        let friction = material.friction * obstacle.friction;
+        for i in 0..particles.position.len() {
+            if particles.inverse_mass[i] == 0.0 {
+                continue;
+            }
+            let (position, previous) = (&mut particles.position[i], &mut particles.previous[i]);
+            if let Some(push) = moving.push(*position, *previous) {
+                push.apply(position, previous, friction);
+                contacts += 1;
+            }
+        }
+    }
+    contacts
+}
+
+/// An obstacle's shape within one substep.
+struct MovingShape {
+    shape: Shape,
+    thickness: f32,
+    start: Isometry3d,
+    end: Isometry3d,
+    from_world_start: Isometry3d,
+    from_world_end: Isometry3d,
+    /// Angle that the obstacle turns by, rad.
+    turn: f32,
+}
+
+/// What brings a particle back to the surface.
+struct Push {
+    /// Outward normal of the surface.
+    normal: Vec3A,
+    /// How far to push along it, m.
+    depth: f32,
+    /// How deep inside the particle was before the substep, m.
+    old_depth: f32,
+    /// Way of the surface at the point of contact within the substep, m.
+    surface_way: Vec3A,
+}
+
+impl MovingShape {
+    fn new(obstacle: &Obstacle, thickness: f32, span: Range<f32>) -> Self {
+        let (start, end) = (obstacle.pose(span.start), obstacle.pose(span.end));
+        // |q1 - q0| is half of the angle, to first order, on the shorter of the two ways around.
+        let (q0, q1) = (start.rotation, end.rotation);
+        let turn = 2.0 * shorter_way(q0, q1);
+        Self {
+            shape: obstacle.shape,
+            thickness,
+            from_world_start: start.inverse(),
+            from_world_end: end.inverse(),
+            start,
+            end,
+            turn,
+        }
+    }
+
+    /// The push that a particle needs which went from `previous` to `position`, if it needs one.
+    fn push(&self, position: Vec3A, previous: Vec3A) -> Option<Push> {
+        let local = self.from_world_end.transform_point(position);
+        let after = self.surface(local);
+        // A particle that is farther away than it can have come this substep is left alone.
+        let reach = position.distance(previous)
+            + self.start.translation.distance(self.end.translation)
+            + self.turn * local.length();
+        if after.distance > reach {
+            return None;
+        }
+        let old_local = self.from_world_start.transform_point(previous);
+        let before = self.surface(old_local);
+        let same_side = before.distance <= 0.0 || before.normal.dot(after.normal) > 0.0;
+        let (normal, depth, old_depth) = if same_side {
+            (after.normal, -after.distance, (-before.distance).max(0.0))
+        } else {
+            let (entry, normal) = self.sweep(old_local, local)?;
+            (normal, normal.dot(entry - local), 0.0)
+        };
+        if depth <= 0.0 {
+            return None;
+        }
+        let touched = local + normal * depth;
+        let surface_way = if self.start == self.end {
+            Vec3A::ZERO
+        } else {
+            self.end.transform_point(touched) - self.start.transform_point(touched)
+        };
+        let normal = self.end.rotation * normal;
+        Some(Push { normal, depth, old_depth: old_depth.min(depth), surface_way })
+    }
+
+    /// The surface that particles stay out of, seen from `local`: the shape and the cloth's thickness around it.
+    fn surface(&self, local: Vec3A) -> Surface {
+        let surface = self.shape.surface(local);
+        Surface { distance: surface.distance - self.thickness, ..surface }
+    }
+
+    /// Where the straight way from `from` to `to` enters the shape, and the normal there. Sphere tracing (Hart 1996).
+    fn sweep(&self, from: Vec3A, to: Vec3A) -> Option<(Vec3A, Vec3A)> {
+        const CLOSE: f32 = 1e-5;
+        const STEPS: u32 = 32;
+        let (direction, length) = (to - from).normalize_and_length();
+        let mut way = 0.0;
+        for _ in 0..STEPS {
+            let point = from + direction * way;
+            let surface = self.surface(point);
+            if surface.distance < CLOSE {
+                return Some((point, surface.normal));
+            }
+            way += surface.distance;
+            if way > length {
+                return None;
+            }
+        }
+        None
+    }
+}
+
+impl Push {
+    fn apply(&self, position: &mut Vec3A, previous: &mut Vec3A, friction: f32) {
+        *position += self.normal * self.depth;
+        // What was inside before this substep leaves without gaining speed from it.
+        *previous += self.normal * self.old_depth;
+        let way = *position - *previous - self.surface_way;
+        let slide = way - self.normal * way.dot(self.normal);
+        let hold = friction * (self.depth - self.old_depth);
+        let length = slide.length();
+        *position -= if length > hold { slide * (hold / length) } else { slide };
+    }
+}
+
+/// Distance between two unit quaternions as rotations.
+fn shorter_way(a: Quat, b: Quat) -> f32 {
+    (a - b).length().min((a + b).length())
+}

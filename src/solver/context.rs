@@ -1,0 +1,69 @@
+//! What surrounds a cloth during one step.
+
+use bevy::math::Vec3A;
+
+use super::{Material, Obstacle, Tether, WindSource};
+
+/// How the springs are integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Extended position-based dynamics with small steps: stable at any stiffness.
+    #[default]
+    Xpbd,
+    /// Forces and symplectic Euler, the textbook form: accurate, and costly where springs are stiff.
+    Explicit,
+}
+
+/// The way of a fixed particle over one step, m, relative to the cloth's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anchor {
+    /// The particle that is held.
+    pub particle: u32,
+    /// Where it is when the step starts.
+    pub start: Vec3A,
+    /// Where it is when the step ends.
+    pub end: Vec3A,
+}
+
+/// Settings and surroundings of one step.
+#[derive(Clone, Debug)]
+pub struct StepContext<'a> {
+    /// Duration of the step, s. More than [`MAX_TIME_STEP`](super::MAX_TIME_STEP) is cut down to it.
+    pub dt: f32,
+    /// How the springs are integrated.
+    pub method: Method,
+    /// Substeps a step, at least 1. [`Method::Explicit`] finds its own number.
+    pub substeps: u32,
+    /// The most substeps that [`Method::Explicit`] may take.
+    pub max_substeps: u32,
+    /// What the cloth is made of.
+    pub material: Material,
+    /// Gravity, m/s².
+    pub gravity: Vec3A,
+    /// Fixed particles and their way.
+    pub anchors: &'a [Anchor],
+    /// Longest allowed distances to fixed particles. Used by [`Method::Xpbd`] only.
+    pub tethers: &'a [Tether],
+    /// By how much of its length a tether gives, no unit. 0.002 to 0.01.
+    pub tether_slack: f32,
+    /// Obstacles and their way.
+    pub obstacles: &'a [Obstacle],
+    /// Density of the air, kg/m³. Zero for a vacuum.
+    pub fluid_density: f32,
+    /// All winds that may reach the cloth.
+    pub winds: &'a [WindSource],
+    /// Time since the start of the simulation at the end of this step, s.
+    pub time: f32,
+}
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepReport {
+    /// Substeps taken.
+    pub substeps: u32,
+    /// Share of the asked stiffness and damping that was used, 0..=1. Below one when [`Method::Explicit`] would have
+    /// needed more than [`StepContext::max_substeps`] substeps for the whole.
+    pub stiffness_scale: f32,
+    /// Particles in touch with an obstacle in the last substep.
+    pub contacts: u32,
+}

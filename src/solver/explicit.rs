@@ -1,0 +1,75 @@
+//! The textbook solver: accelerations from the sum of all forces.
+//!
+//! Exact where its step is small, and therefore also what the other solver is tested against.
+
+use super::{Material, Particles, Scratch, Spring, SpringConstants, StepContext, Topology};
+
+/// Substeps that keep a step of `dt` seconds stable, and the share of stiffness and damping that they can carry: 1
+/// unless more than `ctx.max_substeps` would be needed.
+///
+/// Symplectic Euler of x'' = -ω² x - γ x' is stable while ω² h² + 2 γ h < 4. The largest ω² and γ of the whole cloth
+/// are bounded by Gershgorin's circles, twice the sum over a particle's springs of k/m and of c/m.
+pub(super) fn stable_substeps(
+    particles: &Particles,
+    topology: &Topology,
+    ctx: &StepContext,
+    dt: f32,
+    scratch: &mut Scratch,
+) -> (u32, f32) {
+    sum_spring_constants(topology, &ctx.material, scratch);
+    let (mut omega_squared, mut gamma) = (0.0_f32, 0.0_f32);
+    for (&w, &(k, c)) in particles.inverse_mass.iter().zip(&scratch.spring_sums) {
+        omega_squared = omega_squared.max(2.0 * k * w);
+        gamma = gamma.max(2.0 * c * w);
+    }
+    // The positive root of ω² h² + 2 γ h = 4, written so that ω = 0 needs no special case.
+    let longest = 4.0 / (gamma + (gamma * gamma + 4.0 * omega_squared).sqrt());
+    let needed = (dt / longest).ceil().max(1.0);
+    let most = ctx.max_substeps.max(1);
+    if needed <= most as f32 {
+        return (needed as u32, 1.0);
+    }
+    let h = dt / most as f32;
+    (most, 4.0 / (omega_squared * h * h + 2.0 * gamma * h))
+}
+
+/// Adds up stiffness and damping of the springs at each particle.
+fn sum_spring_constants(topology: &Topology, material: &Material, scratch: &mut Scratch) {
+    scratch.spring_sums.fill((0.0, 0.0));
+    for batch in &topology.batches {
+        let SpringConstants { stiffness, damping } = material.spring(batch.kind);
+        for spring in &topology.springs[batch.range.clone()] {
+            for particle in [spring.a, spring.b] {
+                let (k, c) = &mut scratch.spring_sums[particle as usize];
+                *k += stiffness;
+                *c += damping;
+            }
+        }
+    }
+}
+
+/// Sums steady and spring forces: F = k (L0 - |p - q|) n - c ((vp - vq)·n) n with n = (p - q) / |p - q|.
+pub(super) fn sum_forces(
+    particles: &Particles,
+    topology: &Topology,
+    material: &Material,
+    stiffness_scale: f32,
+    scratch: &mut Scratch,
+) {
+    let Scratch { steady_force, force, .. } = scratch;
+    force.copy_from_slice(steady_force);
+    for batch in &topology.batches {
+        let SpringConstants { stiffness, damping } = material.spring(batch.kind);
+        let (k, c) = (stiffness * stiffness_scale, damping * stiffness_scale);
+        for &Spring { a, b, rest } in &topology.springs[batch.range.clone()] {
+            let (p, q) = (a as usize, b as usize);
+            let along = particles.position[p] - particles.position[q];
+            let length = along.length();
+            let n = along.normalize_or_zero();
+            let approach = n.dot(particles.velocity[p] - particles.velocity[q]);
+            let pull = n * (k * (rest - length) - c * approach);
+            force[p] += pull;
+            force[q] -= pull;
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Forces of the surroundings that aren't constraints.
+
+pub mod wind;

@@ -1,0 +1,149 @@
+//! The air: wind sources and the force of moving air on triangles.
+//!
+//! ```text
+//!        n   u = air velocity - triangle velocity
+//!      \ ^ /                     c = û·n >= 0
+//!   ----\|/----  triangle, A     F = ½ ρ A |u|² c (drag û + lift (n - c û))
+//! ```
+//!
+//! The normal is turned to the lee side, so c isn't negative; cloth edge-on to the wind has c = 0 and feels nothing.
+//! Quadratic drag on a plate, with the lift perpendicular to the wind as in Wilson et al., "Simulating wind effects
+//! on cloth and hair in Disney's Frozen" (2014).
+
+use bevy::math::{Isometry3d, Vec3A};
+
+use crate::solver::{Particles, Scratch, StepContext, Topology};
+
+mod gusts;
+
+pub use gusts::Gusts;
+
+/// Where a wind blows, relative to the cloth's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WindRegion {
+    /// Everywhere.
+    Everywhere,
+    /// In a sphere.
+    Sphere {
+        /// Centre, m.
+        centre: Vec3A,
+        /// Radius, m.
+        radius: f32,
+        /// Width of the edge inside of which the wind dies down, m.
+        edge: f32,
+    },
+    /// In a box.
+    Cuboid {
+        /// Centre and axes of the box.
+        pose: Isometry3d,
+        /// Half of its lengths along its axes, m.
+        half_size: Vec3A,
+        /// Width of the edge inside of which the wind dies down, m.
+        edge: f32,
+    },
+}
+
+impl WindRegion {
+    /// The same region with positions relative to `origin`.
+    pub fn relative_to(self, origin: Vec3A) -> Self {
+        match self {
+            Self::Everywhere => self,
+            Self::Sphere { centre, radius, edge } => Self::Sphere { centre: centre - origin, radius, edge },
+            Self::Cuboid { pose, half_size, edge } => {
+                let pose = Isometry3d::new(pose.translation - origin, pose.rotation);
+                Self::Cuboid { pose, half_size, edge }
+            }
+        }
+    }
+
+    /// Share of the wind that is felt at `point`: 1 inside, 0 outside, smooth over the edge.
+    pub fn weight(&self, point: Vec3A) -> f32 {
+        let (depth, edge) = match *self {
+            Self::Everywhere => return 1.0,
+            Self::Sphere { centre, radius, edge } => (radius - point.distance(centre), edge),
+            Self::Cuboid { pose, half_size, edge } => {
+                let local = pose.inverse().transform_point(point);
+                ((half_size - local.abs()).min_element(), edge)
+            }
+        };
+        if depth <= 0.0 {
+            0.0
+        } else if depth >= edge {
+            1.0
+        } else {
+            let t = depth / edge;
+            t * t * (3.0 - 2.0 * t)
+        }
+    }
+}
+
+/// A wind that may reach a cloth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindSource {
+    /// Mean velocity, m/s.
+    pub velocity: Vec3A,
+    /// What is added to the mean: gusts and turbulence.
+    pub gusts: Gusts,
+    /// Where it blows.
+    pub region: WindRegion,
+    /// The cloth's origin in the world, m: noise belongs to the world, not to the cloth.
+    pub origin: Vec3A,
+}
+
+/// Writes the velocity of the air at each triangle into the scratch, once a step.
+pub fn sample_air(particles: &Particles, topology: &Topology, ctx: &StepContext, scratch: &mut Scratch) {
+    scratch.air_velocity.fill(Vec3A::ZERO);
+    if !feels_air(ctx) {
+        return;
+    }
+    for wind in ctx.winds {
+        let field = gusts::Field::sample(wind, &particles.position, ctx.time);
+        for (air, triangle) in scratch.air_velocity.iter_mut().zip(&topology.triangles) {
+            let centre = triangle.iter().map(|&i| particles.position[i as usize]).sum::<Vec3A>() / 3.0;
+            let weight = wind.region.weight(centre);
+            if weight > 0.0 {
+                *air += field.at(centre) * weight;
+            }
+        }
+    }
+}
+
+/// Renews the steady force: external forces, and the force of the air, a third of each triangle's to each vertex.
+///
+/// The force stands for `interval` seconds. It is limited so that it can't turn a triangle's velocity against the
+/// air around within that time, which is what makes light cloth in a storm stable.
+pub fn apply_air(particles: &Particles, topology: &Topology, ctx: &StepContext, interval: f32, scratch: &mut Scratch) {
+    let Scratch { steady_force, air_velocity, .. } = scratch;
+    steady_force.copy_from_slice(&particles.force);
+    if !feels_air(ctx) {
+        return;
+    }
+    let Particles { position, velocity, .. } = particles;
+    let (drag, lift) = (ctx.material.drag, ctx.material.lift);
+    let half_density = 0.5 * ctx.fluid_density;
+    let most_per_area = ctx.material.density / interval;
+    for (&[i, j, k], &air) in topology.triangles.iter().zip(air_velocity.iter()) {
+        let (i, j, k) = (i as usize, j as usize, k as usize);
+        let doubled = (position[j] - position[i]).cross(position[k] - position[i]);
+        let doubled_area = doubled.length();
+        let u = air - (velocity[i] + velocity[j] + velocity[k]) / 3.0;
+        let speed = u.length();
+        if doubled_area * speed < 1e-12 {
+            continue;
+        }
+        let n = doubled / doubled_area;
+        let across = n.dot(u);
+        // |u|² c (drag û + lift (n - c û)) = |u·n| (drag u + lift (|u| n - (u·n) û)), with n towards the lee.
+        let blown = u * drag + (n * speed.copysign(across) - u * (across.abs() / speed)) * lift;
+        let per_area = (half_density * across.abs()).min(most_per_area / (drag + lift));
+        let share = blown * (per_area * doubled_area / 6.0);
+        steady_force[i] += share;
+        steady_force[j] += share;
+        steady_force[k] += share;
+    }
+}
+
+/// Whether the air acts on this cloth at all.
+fn feels_air(ctx: &StepContext) -> bool {
+    ctx.fluid_density > 0.0 && ctx.material.drag + ctx.material.lift > 0.0
+}

@@ -1,0 +1,199 @@
+//! The running state of a cloth, and how a game reads and pushes it.
+
+use std::sync::Arc;
+
+use bevy::{
+    math::{Affine3A, Vec3A},
+    prelude::*,
+};
+
+use crate::{
+    anchor::HeldPin,
+    build::weld::NO_PARTICLE,
+    cloth::Cloth,
+    solver::{Anchor, Material, Obstacle, Particles, Scratch, StepReport, Tether, Topology, WindSource},
+};
+
+/// Particles of a cloth, in world space. Comes with [`Cloth`](crate::prelude::Cloth); empty until the cloth is ready.
+///
+/// A mesh's vertices that share a position are one particle: [`particle_of_vertex`](Self::particle_of_vertex) maps
+/// one to the other.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(opaque)]
+#[reflect(Component, Default, Debug, Clone)]
+pub struct ClothState {
+    /// State of the solver, relative to `origin`.
+    pub(crate) particles: Particles,
+    /// Positions when the latest step began: drawing interpolates from them, and recovery goes back to them.
+    pub(crate) step_start: Vec<Vec3A>,
+    /// World position that all positions are relative to, m.
+    pub(crate) origin: Vec3,
+    /// What is connected to what.
+    pub(crate) topology: Arc<Topology>,
+    /// Particle of each vertex of the mesh.
+    pub(crate) particle_of_vertex: Arc<[u32]>,
+    /// The settings in force: the latest that were valid.
+    pub(crate) settings: Cloth,
+    /// The constants in force: the latest that were valid.
+    pub(crate) material: Option<Material>,
+    /// Fixed particles and what they follow.
+    pub(crate) pins: Vec<HeldPin>,
+    /// Tethers to the pins.
+    pub(crate) tethers: Vec<Tether>,
+    /// Transform of the entity at the latest step.
+    pub(crate) pose: Affine3A,
+    /// Number of steps since the cloth was built: drawing skips what hasn't moved.
+    pub(crate) steps: u64,
+    /// What the latest step did.
+    pub(crate) report: Option<StepReport>,
+    /// What has been asked for and is done at the next occasion.
+    pub(crate) requests: Requests,
+    /// What has been said once and needn't be said again.
+    pub(crate) said: Said,
+    /// Buffers of a step.
+    pub(crate) work: Work,
+}
+
+/// What a game has asked of a cloth.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Requests {
+    /// Back to the rest shape.
+    pub reset: bool,
+    /// Carry the cloth along with its entity, as one rigid piece.
+    pub teleport: bool,
+}
+
+/// Which warnings have been given.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Said {
+    /// The explicit solver has too few substeps.
+    pub softened: bool,
+    /// The state became non-finite.
+    pub not_finite: bool,
+}
+
+/// Buffers that a step fills anew.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Work {
+    pub anchors: Vec<Anchor>,
+    pub obstacles: Vec<Obstacle>,
+    pub winds: Vec<WindSource>,
+    pub scratch: Scratch,
+    /// The latest step ended in a non-finite state and was taken back.
+    pub recovered: bool,
+}
+
+impl ClothState {
+    /// Number of particles; 0 until the cloth is ready.
+    pub fn particle_count(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// The particle that a vertex of the mesh belongs to; none for a vertex that is in no triangle.
+    pub fn particle_of_vertex(&self, vertex: usize) -> Option<usize> {
+        let &particle = self.particle_of_vertex.get(vertex)?;
+        (particle != NO_PARTICLE).then_some(particle as usize)
+    }
+
+    /// World position of a particle after the latest step, m.
+    pub fn position(&self, particle: usize) -> Option<Vec3> {
+        Some(self.origin + Vec3::from(*self.particles.position.get(particle)?))
+    }
+
+    /// World positions of all particles after the latest step, m.
+    pub fn positions(&self) -> impl ExactSizeIterator<Item = Vec3> {
+        self.particles.position.iter().map(|&p| self.origin + Vec3::from(p))
+    }
+
+    /// Velocity of a particle, m/s. A pinned particle has the velocity of its pin.
+    pub fn velocity(&self, particle: usize) -> Option<Vec3> {
+        self.particles.velocity.get(particle).copied().map(Vec3::from)
+    }
+
+    /// Velocities of all particles, m/s.
+    pub fn velocities(&self) -> impl ExactSizeIterator<Item = Vec3> {
+        self.particles.velocity.iter().copied().map(Vec3::from)
+    }
+
+    /// World normals of all particles, unit vectors, on the side that the mesh's triangles face. Computed anew.
+    pub fn normals(&self) -> Vec<Vec3> {
+        let mut normals = vec![Vec3A::ZERO; self.particles.len()];
+        for triangle in &self.topology.triangles {
+            let [a, b, c] = triangle.map(|i| self.particles.position[i as usize]);
+            let doubled_area = (b - a).cross(c - a);
+            for &particle in triangle {
+                normals[particle as usize] += doubled_area;
+            }
+        }
+        normals.into_iter().map(|normal| normal.normalize_or_zero().into()).collect()
+    }
+
+    /// Particles of each triangle.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.topology.triangles
+    }
+
+    /// Whether a particle is pinned.
+    pub fn is_pinned(&self, particle: usize) -> bool {
+        self.particles.inverse_mass.get(particle) == Some(&0.0)
+    }
+
+    /// Springs, triangles and areas.
+    pub fn topology(&self) -> &Arc<Topology> {
+        &self.topology
+    }
+
+    /// What the latest step did: substeps, contacts. None before the first.
+    pub fn report(&self) -> Option<StepReport> {
+        self.report
+    }
+
+    /// Pushes a particle with `force` (N) during the next step. Forces add up. One that isn't finite is ignored.
+    pub fn add_force(&mut self, particle: usize, force: Vec3) {
+        if let Some(total) = self.particles.force.get_mut(particle)
+            && force.is_finite()
+        {
+            *total += Vec3A::from(force);
+        }
+    }
+
+    /// Gives a particle an impulse (N·s) at once. Pinned particles and impulses that aren't finite are left alone.
+    pub fn add_impulse(&mut self, particle: usize, impulse: Vec3) {
+        if let Some(velocity) = self.particles.velocity.get_mut(particle)
+            && impulse.is_finite()
+        {
+            *velocity += Vec3A::from(impulse) * self.particles.inverse_mass[particle];
+        }
+    }
+
+    /// Spreads `force` (N in all) during the next step over the free particles within `radius` (m) of the world
+    /// position `centre`: by mass, and fading to nothing at the radius.
+    pub fn add_force_in_radius(&mut self, centre: Vec3, radius: f32, force: Vec3) {
+        self.spread(centre, radius, |state, particle, share| state.add_force(particle, force * share));
+    }
+
+    /// Spreads an impulse (N·s in all) at once, as [`add_force_in_radius`](Self::add_force_in_radius) does a force.
+    pub fn add_impulse_in_radius(&mut self, centre: Vec3, radius: f32, impulse: Vec3) {
+        self.spread(centre, radius, |state, particle, share| {
+            state.add_impulse(particle, impulse * share);
+        });
+    }
+
+    fn spread(&mut self, centre: Vec3, radius: f32, apply: impl Fn(&mut Self, usize, f32)) {
+        let centre = Vec3A::from(centre - self.origin);
+        let weight = |state: &Self, particle: usize| {
+            let closeness = 1.0 - state.particles.position[particle].distance(centre) / radius;
+            let inverse_mass = state.particles.inverse_mass[particle];
+            if closeness > 0.0 && inverse_mass > 0.0 { closeness / inverse_mass } else { 0.0 }
+        };
+        let total: f32 = (0..self.particles.len()).map(|i| weight(self, i)).sum();
+        if total > 0.0 {
+            for particle in 0..self.particles.len() {
+                let share = weight(self, particle) / total;
+                if share > 0.0 {
+                    apply(self, particle, share);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! The playground draws what it should: it runs without a window, writes a picture, and the cloths are in it.
+
+use std::{
+    env,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use image::{Rgb, RgbImage};
+
+const SIZE: (u32, u32) = (640, 360);
+
+/// Where a cloth must be seen, and what counts as its colour.
+struct Expectation {
+    name: &'static str,
+    /// Left, top, right and bottom as fractions of the picture.
+    region: [f32; 4],
+    /// From and to, in degrees; it may wrap around 360.
+    hue: [f32; 2],
+    /// From and to, of 1.
+    saturation: [f32; 2],
+    /// Fraction of the region's pixels that must have the colour.
+    share: f32,
+}
+
+#[rustfmt::skip]
+const EXPECTATIONS: [Expectation; 3] = [
+    Expectation { name: "red panel", region: [0.15, 0.25, 0.40, 0.75], hue: [345.0, 20.0], saturation: [0.35, 1.0], share: 0.25 },
+    Expectation { name: "blue panel", region: [0.38, 0.25, 0.62, 0.60], hue: [195.0, 235.0], saturation: [0.30, 1.0], share: 0.25 },
+    Expectation { name: "flag", region: [0.60, 0.10, 0.90, 0.60], hue: [175.0, 205.0], saturation: [0.30, 1.0], share: 0.10 },
+];
+
+#[test]
+fn the_playground_shows_its_cloths() {
+    let picture = capture_playground();
+    assert_eq!(picture.dimensions(), SIZE);
+    assert!(
+        colour_variance(&picture) > 100.0,
+        "the picture is blank: the variance of its colours is {}",
+        colour_variance(&picture)
+    );
+    for expectation in &EXPECTATIONS {
+        let share = share_of_colour(&picture, expectation);
+        assert!(
+            share >= expectation.share,
+            "{}: {:.1} % of its region have its colour, expected at least {:.1} %",
+            expectation.name,
+            100.0 * share,
+            100.0 * expectation.share
+        );
+    }
+}
+
+fn capture_playground() -> RgbImage {
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("playground_picture");
+    let picture = directory.join("frame_0060.png");
+    // A picture from an earlier run must not pass for this one's.
+    let _ = std::fs::remove_file(&picture);
+
+    let program = playground_program();
+    let output = Command::new(&program)
+        .args(["--frames", "60", "--every", "60"])
+        .args(["--size", &format!("{}x{}", SIZE.0, SIZE.1)])
+        .arg("--capture")
+        .arg(&directory)
+        .output()
+        .unwrap_or_else(|error| {
+            panic!("cannot run {}: {error}; `cargo build --example playground` builds it", program.display())
+        });
+    assert!(
+        output.status.success(),
+        "the playground failed ({}):\n{}",
+        output.status,
+        String::from_utf8_lossy(&output.stderr)
+    );
+    image::open(&picture).unwrap_or_else(|error| panic!("cannot read {}: {error}", picture.display())).to_rgb8()
+}
+
+/// `cargo test` builds the examples into a folder next to that of the tests.
+fn playground_program() -> PathBuf {
+    let test = env::current_exe().expect("a test knows its own path");
+    let profile = test.ancestors().nth(2).expect("tests are built into <profile>/deps");
+    profile.join("examples").join(format!("playground{}", env::consts::EXE_SUFFIX))
+}
+
+/// The mean square of each channel's distance from its mean, in 8-bit steps squared.
+fn colour_variance(picture: &RgbImage) -> f32 {
+    let count = picture.pixels().len() as f32;
+    let variance_of = |channel: usize| {
+        let values = || picture.pixels().map(|pixel| f32::from(pixel.0[channel]));
+        let mean = values().sum::<f32>() / count;
+        values().map(|value| (value - mean).powi(2)).sum::<f32>() / count
+    };
+    (0..3).map(variance_of).sum::<f32>() / 3.0
+}
+
+fn share_of_colour(picture: &RgbImage, expectation: &Expectation) -> f32 {
+    let [left, top, right, bottom] = expectation.region;
+    let (width, height) = (picture.width() as f32, picture.height() as f32);
+    let columns = (left * width) as u32..(right * width) as u32;
+    let rows = (top * height) as u32..(bottom * height) as u32;
+    let total = columns.len() * rows.len();
+    let matching = rows
+        .flat_map(|row| columns.clone().map(move |column| (column, row)))
+        .filter(|&(column, row)| has_colour(picture.get_pixel(column, row), expectation))
+        .count();
+    matching as f32 / total.max(1) as f32
+}
+
+fn has_colour(pixel: &Rgb<u8>, expectation: &Expectation) -> bool {
+    let (hue, saturation) = hue_and_saturation(pixel.0.map(f32::from));
+    let [hue_from, hue_to] = expectation.hue;
+    let hue_fits =
+        if hue_from <= hue_to { (hue_from..=hue_to).contains(&hue) } else { hue >= hue_from || hue <= hue_to };
+    let [saturation_from, saturation_to] = expectation.saturation;
+    hue_fits && (saturation_from..=saturation_to).contains(&saturation)
+}
+
+/// Hue in degrees and saturation from 0 to 1, as in the HSV colour model.
+fn hue_and_saturation([red, green, blue]: [f32; 3]) -> (f32, f32) {
+    let largest = red.max(green).max(blue);
+    let range = largest - red.min(green).min(blue);
+    if range == 0.0 {
+        return (0.0, 0.0);
+    }
+    let sixths = if largest == red {
+        (green - blue) / range
+    } else if largest == green {
+        (blue - red) / range + 2.0
+    } else {
+        (red - green) / range + 4.0
+    };
+    ((60.0 * sixths).rem_euclid(360.0), range / largest)
+}
