@@ -74,9 +74,9 @@ pub(crate) fn on_cloth_removed(
     removed: On<Remove, Cloth>,
     mut commands: Commands,
     cloths: Query<&ClothMesh>,
-    mut meshes: ResMut<Assets<Mesh>>,
+    meshes: Option<ResMut<Assets<Mesh>>>,
 ) {
-    if let Ok(cloth) = cloths.get(removed.entity) {
+    if let (Ok(cloth), Some(mut meshes)) = (cloths.get(removed.entity), meshes) {
         mesh::release(meshes.get_mut(&cloth.drawn));
     }
     commands.entity(removed.entity).try_remove::<(ClothMesh, ClothState, ClothStatus)>();

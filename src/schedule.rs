@@ -85,60 +85,63 @@ impl Plugin for ClothPlugin {
             .init_resource::<collider::Obstacles>()
             .init_resource::<wind::Winds>()
             .init_resource::<build::system::TopologyCache>()
-            .insert_resource(ClothRun { fixed: self.is_fixed(), parallel: self.parallel });
+            .insert_resource(ClothRun { fixed: self.is_fixed(), parallel: self.parallel })
+            .configure_sets(PreUpdate, ClothSystems::Prepare.run_if(has_what_it_needs))
+            .configure_sets(
+                self.schedule,
+                (ClothSystems::Gather, ClothSystems::Simulate, ClothSystems::Finalize)
+                    .chain()
+                    .run_if(has_what_it_needs),
+            )
+            .configure_sets(
+                PostUpdate,
+                ClothSystems::Draw
+                    .after(TransformSystems::Propagate)
+                    .before(AssetEventSystems)
+                    .run_if(has_what_it_needs),
+            )
+            .add_systems(PreUpdate, build::system::build_cloths.in_set(ClothSystems::Prepare))
+            .add_systems(
+                self.schedule,
+                (
+                    (
+                        settings::update_settings,
+                        anchor::update_pins,
+                        anchor::follow_targets,
+                        collider::gather_obstacles,
+                        wind::gather_winds,
+                    )
+                        .chain()
+                        .in_set(ClothSystems::Gather),
+                    simulate::step_cloths.in_set(ClothSystems::Simulate),
+                    simulate::report_steps.in_set(ClothSystems::Finalize),
+                ),
+            )
+            .add_systems(
+                PostUpdate,
+                (draw::mesh::shape_cloths, draw::mesh::write_meshes).chain().in_set(ClothSystems::Draw),
+            )
+            .add_observer(commands::on_cloth_removed);
     }
 
-    /// Adds the systems once all plugins are there: only then is it known whether something is missing.
+    /// Says what is missing, once all plugins are there.
     fn finish(&self, app: &mut App) {
-        let missing = missing_plugins(app);
+        let world = app.world();
+        let needs = [
+            ("TimePlugin (in MinimalPlugins)", world.contains_resource::<Time>()),
+            ("TransformPlugin", app.is_plugin_added::<TransformPlugin>()),
+            ("AssetPlugin and MeshPlugin", world.contains_resource::<Assets<Mesh>>()),
+        ];
+        let missing: Vec<&str> = needs.iter().filter(|(_, there)| !there).map(|&(plugin, _)| plugin).collect();
         if !missing.is_empty() {
-            warn!("ClothPlugin does nothing: it needs {}; add them to the app", missing.join(", "));
-            return;
+            warn!("ClothPlugin can't do its work: it needs {}; add them to the app", missing.join(", "));
         }
-        app.configure_sets(
-            self.schedule,
-            (ClothSystems::Gather, ClothSystems::Simulate, ClothSystems::Finalize).chain(),
-        )
-        .configure_sets(PostUpdate, ClothSystems::Draw.after(TransformSystems::Propagate).before(AssetEventSystems))
-        .add_systems(PreUpdate, build::system::build_cloths.in_set(ClothSystems::Prepare))
-        .add_systems(
-            self.schedule,
-            (
-                (
-                    settings::update_settings,
-                    anchor::update_pins,
-                    anchor::follow_targets,
-                    collider::gather_obstacles,
-                    wind::gather_winds,
-                )
-                    .chain()
-                    .in_set(ClothSystems::Gather),
-                simulate::step_cloths.in_set(ClothSystems::Simulate),
-                simulate::report_steps.in_set(ClothSystems::Finalize),
-            ),
-        )
-        .add_systems(
-            PostUpdate,
-            (draw::mesh::shape_cloths, draw::mesh::write_meshes).chain().in_set(ClothSystems::Draw),
-        )
-        .add_observer(commands::on_cloth_removed);
     }
 }
 
-/// The plugins without which the systems couldn't run.
-fn missing_plugins(app: &App) -> Vec<&'static str> {
-    let world = app.world();
-    let mut missing = Vec::new();
-    if !world.contains_resource::<Time>() {
-        missing.push("TimePlugin (in MinimalPlugins)");
-    }
-    if !app.is_plugin_added::<TransformPlugin>() {
-        missing.push("TransformPlugin");
-    }
-    if !world.contains_resource::<Assets<Mesh>>() {
-        missing.push("AssetPlugin and MeshPlugin");
-    }
-    missing
+/// Without time or meshes there is nothing to do, and no system may ask for them.
+fn has_what_it_needs(time: Option<Res<Time>>, meshes: Option<Res<Assets<Mesh>>>) -> bool {
+    time.is_some() && meshes.is_some()
 }
 
 /// How the plugin was set up.
