@@ -21,8 +21,9 @@ pub(crate) fn build(rest: &[Vec3], triangles: &[[u32; 3]]) -> Result<Topology, C
     let cells = cells::find(rest, &triangles, &edges);
     let links = springs::find(rest, &triangles, &slivers, &edges, &cells);
     let (springs, batches) = coloring::batches(rest, &links);
-    let areas = areas(rest, &triangles);
-    Ok(Topology { rest: rest.to_vec(), springs, batches, triangles, areas, cells: cells.corners })
+    let triangle_areas: Vec<f32> = triangles.iter().map(|triangle| triangle_area(rest, triangle)).collect();
+    let areas = particle_areas(rest.len(), &triangles, &triangle_areas);
+    Ok(Topology { rest: rest.to_vec(), springs, batches, triangles, triangle_areas, areas, cells: cells.corners })
 }
 
 /// Splits triangles with distinct corners into those with an area and slivers, and drops repetitions.
@@ -38,18 +39,18 @@ fn sort_out(rest: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<[u32; 
         })
         .partition(|triangle| {
             let [a, b, c] = triangle.map(|i| rest[i as usize]);
-            let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
-            area(a, b, c) > SLIVER * longest
+            let sides = [b - a, c - b, a - c];
+            let longest = sides.map(Vec3::length_squared).into_iter().fold(0.0, f32::max);
+            triangle_area(rest, triangle) > SLIVER * longest
         })
 }
 
 /// Area that each particle stands for, m². One without a triangle's area gets the mean, so that it isn't weightless.
-fn areas(rest: &[Vec3], triangles: &[[u32; 3]]) -> Vec<f32> {
-    let mut areas = vec![0.0; rest.len()];
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|i| rest[i as usize]);
+fn particle_areas(count: usize, triangles: &[[u32; 3]], triangle_areas: &[f32]) -> Vec<f32> {
+    let mut areas = vec![0.0; count];
+    for (triangle, area) in triangles.iter().zip(triangle_areas) {
         for &particle in triangle {
-            areas[particle as usize] += area(a, b, c) / 3.0;
+            areas[particle as usize] += area / 3.0;
         }
     }
     let mean = areas.iter().sum::<f32>() / areas.len() as f32;
@@ -59,6 +60,8 @@ fn areas(rest: &[Vec3], triangles: &[[u32; 3]]) -> Vec<f32> {
     areas
 }
 
-fn area(a: Vec3, b: Vec3, c: Vec3) -> f32 {
+/// Area of a triangle, m².
+fn triangle_area(rest: &[Vec3], triangle: &[u32; 3]) -> f32 {
+    let [a, b, c] = triangle.map(|i| rest[i as usize]);
     0.5 * (b - a).cross(c - a).length()
 }

@@ -26,7 +26,7 @@ const AIR_RATE: f32 = 240.0;
 /// that isn't positive does nothing.
 pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, scratch: &mut Scratch) -> StepReport {
     let dt = ctx.dt.min(MAX_TIME_STEP);
-    if particles.is_empty() || dt.is_nan() || dt <= 0.0 {
+    if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
         return StepReport { substeps: 0, stiffness_scale: 1.0, contacts: 0 };
     }
     scratch.fit(topology);
@@ -75,17 +75,21 @@ fn integrate(particles: &mut Particles, force: &[Vec3A], gravity: Vec3A, decay: 
         previous[i] = position[i];
         let w = inverse_mass[i];
         if w > 0.0 {
-            velocity[i] = (velocity[i] + (gravity + force[i] * w) * h) * decay;
+            velocity[i] = velocity[i] * decay + (gravity + force[i] * w) * h;
             position[i] += velocity[i] * h;
         }
     }
 }
 
 /// Velocities from the way that the particles went within the substep.
+///
+/// That is (position - previous) / h, written as what the constraints have added to the integrated velocity: a way of
+/// g h² is lost to rounding when h is small, a change of speed of g h isn't.
 fn derive_velocities(particles: &mut Particles, h: f32) {
     let Particles { position, previous, velocity, .. } = particles;
     let rate = 1.0 / h;
     for i in 0..position.len() {
-        velocity[i] = (position[i] - previous[i]) * rate;
+        let predicted = previous[i] + velocity[i] * h;
+        velocity[i] += (position[i] - predicted) * rate;
     }
 }

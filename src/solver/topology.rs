@@ -56,6 +56,8 @@ pub struct Topology {
     pub batches: Vec<SpringBatch>,
     /// Particles of each triangle; the order gives the side of its normal.
     pub triangles: Vec<[u32; 3]>,
+    /// Area of each triangle, m².
+    pub triangle_areas: Vec<f32>,
     /// Area that each particle stands for, m²: a third of its triangles. Never zero.
     pub areas: Vec<f32>,
     /// Corners of each near-rectangle of two triangles, around it. The mesh's own diagonal joins the first and third.

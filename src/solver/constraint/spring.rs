@@ -41,11 +41,14 @@ fn solve_batch<const DAMPED: bool>(particles: &mut Particles, springs: &[Spring]
         let (xa, xb) = (position[a], position[b]);
         let along = xa - xb;
         let length = along.length().max(SHORTEST);
-        let n = along / length;
-        let approach = if DAMPED { c * n.dot(along - (previous[a] - previous[b])) } else { 0.0 };
-        let lambda = -(k * (length - rest) + approach) / ((k + c) * (wa + wb) + 1.0);
-        position[a] = xa + n * (wa * lambda);
-        position[b] = xb - n * (wb * lambda);
+        let mut push = k * (rest - length);
+        if DAMPED {
+            push -= c * along.dot(along - (previous[a] - previous[b])) / length;
+        }
+        // n lambda, in one division.
+        let impulse = along * (push / (((k + c) * (wa + wb) + 1.0) * length));
+        position[a] = xa + impulse * wa;
+        position[b] = xb - impulse * wb;
     }
 }
 

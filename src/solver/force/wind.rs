@@ -121,8 +121,9 @@ pub fn apply_air(particles: &Particles, topology: &Topology, ctx: &StepContext, 
     let Particles { position, velocity, .. } = particles;
     let (drag, lift) = (ctx.material.drag, ctx.material.lift);
     let half_density = 0.5 * ctx.fluid_density;
-    let most_per_area = ctx.material.density / interval;
-    for (&[i, j, k], &air) in topology.triangles.iter().zip(air_velocity.iter()) {
+    let most_per_rest_area = ctx.material.density / (interval * (drag + lift));
+    let triangles = topology.triangles.iter().zip(&topology.triangle_areas).zip(air_velocity.iter());
+    for ((&[i, j, k], &rest_area), &air) in triangles {
         let (i, j, k) = (i as usize, j as usize, k as usize);
         let doubled = (position[j] - position[i]).cross(position[k] - position[i]);
         let doubled_area = doubled.length();
@@ -135,8 +136,8 @@ pub fn apply_air(particles: &Particles, topology: &Topology, ctx: &StepContext, 
         let across = n.dot(u);
         // |u|² c (drag û + lift (n - c û)) = |u·n| (drag u + lift (|u| n - (u·n) û)), with n towards the lee.
         let blown = u * drag + (n * speed.copysign(across) - u * (across.abs() / speed)) * lift;
-        let per_area = (half_density * across.abs()).min(most_per_area / (drag + lift));
-        let share = blown * (per_area * doubled_area / 6.0);
+        let rate = (half_density * across.abs() * doubled_area / 2.0).min(most_per_rest_area * rest_area);
+        let share = blown * (rate / 3.0);
         steady_force[i] += share;
         steady_force[j] += share;
         steady_force[k] += share;

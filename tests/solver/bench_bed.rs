@@ -1,0 +1,132 @@
+//! Small cloths and short ways to step them.
+
+use bevy::{
+    math::{Mat3A, Vec3A},
+    prelude::Mesh,
+};
+use bevy_drape::{
+    build,
+    prelude::{ClothGrid, Fabric},
+    solver::{
+        Anchor, Material, Method, Obstacle, Particles, Scratch, StepContext, StepReport, Tether, Topology, WindSource,
+        step,
+    },
+};
+
+pub const GRAVITY: f32 = 9.81;
+
+/// A cloth and all that acts on it.
+#[derive(Clone)]
+pub struct Bed {
+    pub topology: Topology,
+    pub particles: Particles,
+    pub material: Material,
+    pub anchors: Vec<Anchor>,
+    pub tethers: Vec<Tether>,
+    pub obstacles: Vec<Obstacle>,
+    pub winds: Vec<WindSource>,
+    pub method: Method,
+    pub substeps: u32,
+    pub max_substeps: u32,
+    pub gravity: Vec3A,
+    pub fluid_density: f32,
+    pub time: f32,
+    pub scratch: Scratch,
+}
+
+/// A cloth in a vacuum without damping: what is on paper.
+pub fn bare(fabric: Fabric) -> Material {
+    let bare = Fabric { damping: 0.0, drag: 0.0, lift: 0.0, thickness: 0.0, ..fabric };
+    bare.material().expect("valid constants")
+}
+
+impl Bed {
+    /// The particles of `mesh`, free and at rest.
+    pub fn new(mesh: impl Into<Mesh>, material: Material) -> Self {
+        let topology = build::topology_of(&mesh.into(), Mat3A::IDENTITY).expect("a mesh with an area");
+        let rest = topology.rest.iter().copied().map(Vec3A::from).collect();
+        Self {
+            particles: Particles::at_rest(rest, &topology, &material),
+            topology,
+            material,
+            anchors: Vec::new(),
+            tethers: Vec::new(),
+            obstacles: Vec::new(),
+            winds: Vec::new(),
+            method: Method::Xpbd,
+            substeps: 8,
+            max_substeps: 4096,
+            gravity: Vec3A::NEG_Y * GRAVITY,
+            fluid_density: 1.225,
+            time: 0.0,
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// A square metre, lying at height 0, of `n` x `n` particles.
+    pub fn lying(n: u32, material: Material) -> Self {
+        Self::new(ClothGrid::new(1.0, 1.0, n, n).lying(), material)
+    }
+
+    /// Fixes particles where they are.
+    pub fn pinned(mut self, particles: impl IntoIterator<Item = u32>) -> Self {
+        for particle in particles {
+            let place = self.particles.position[particle as usize];
+            self.particles.inverse_mass[particle as usize] = 0.0;
+            self.anchors.push(Anchor { particle, start: place, end: place });
+        }
+        self
+    }
+
+    /// One step of `dt` seconds.
+    pub fn step(&mut self, dt: f32) -> StepReport {
+        self.time += dt;
+        let ctx = StepContext {
+            dt,
+            method: self.method,
+            substeps: self.substeps,
+            max_substeps: self.max_substeps,
+            material: self.material,
+            gravity: self.gravity,
+            anchors: &self.anchors,
+            tethers: &self.tethers,
+            tether_slack: 0.0,
+            obstacles: &self.obstacles,
+            fluid_density: self.fluid_density,
+            winds: &self.winds,
+            time: self.time,
+        };
+        step(&mut self.particles, &self.topology, &ctx, &mut self.scratch)
+    }
+
+    /// Steps of 1/60 s for about `seconds`.
+    pub fn run(&mut self, seconds: f32) {
+        for _ in 0..(seconds * 60.0).round() as u32 {
+            self.step(1.0 / 60.0);
+        }
+    }
+
+    pub fn centre(&self) -> Vec3A {
+        self.particles.position.iter().sum::<Vec3A>() / self.particles.len() as f32
+    }
+
+    pub fn total_mass(&self) -> f32 {
+        self.topology.areas.iter().sum::<f32>() * self.material.density
+    }
+
+    pub fn fastest(&self) -> f32 {
+        self.particles.velocity.iter().map(|v| v.length()).fold(0.0, f32::max)
+    }
+}
+
+/// Root of the mean squared distance between the particles of two cloths, m.
+pub fn rms(a: &Particles, b: &Particles) -> f32 {
+    let squares = a.position.iter().zip(&b.position).map(|(p, q)| p.distance_squared(*q));
+    (squares.sum::<f32>() / a.len() as f32).sqrt()
+}
+
+/// The bits of all positions and velocities.
+pub fn bits(particles: &Particles) -> Vec<u32> {
+    let values = particles.position.iter().chain(&particles.velocity);
+    values.flat_map(|v| v.to_array()).map(f32::to_bits).collect()
+}

@@ -1,0 +1,192 @@
+//! Cloth and obstacles.
+
+use bevy::{
+    math::{Dir3, Isometry3d, Vec3A, ops, primitives::InfinitePlane3d},
+    prelude::{Capsule3d, Cuboid, Cylinder, Quat, Sphere, Vec3, default},
+};
+use bevy_drape::{
+    prelude::Fabric,
+    solver::{Material, Obstacle, Shape},
+};
+use proptest::prelude::*;
+
+use crate::bench_bed::{Bed, GRAVITY, bare};
+
+fn still(shape: Shape, place: Vec3) -> Obstacle {
+    let pose = Isometry3d::from_translation(place);
+    Obstacle { shape, start: pose, end: pose, friction: 1.0 }
+}
+
+fn cotton(friction: f32, thickness: f32) -> Material {
+    Material { friction, thickness, ..bare(Fabric::default()) }
+}
+
+/// How deep the deepest particle is below the surface that it should keep to, m.
+fn depth(bed: &Bed) -> f32 {
+    let depth_in = |obstacle: &Obstacle, p: Vec3A| {
+        bed.material.thickness - obstacle.shape.surface(obstacle.end.inverse().transform_point(p)).distance
+    };
+    let particles = bed.particles.position.iter();
+    particles.flat_map(|&p| bed.obstacles.iter().map(move |o| depth_in(o, p))).fold(0.0, f32::max)
+}
+
+/// A cloth that lies on a slope of `slope` rad, and how far it has come after two seconds.
+fn slid(friction: f32, slope: f32) -> f32 {
+    let turn = Quat::from_rotation_z(-slope);
+    let mut bed = Bed::lying(8, cotton(friction, 0.0));
+    for position in &mut bed.particles.position {
+        *position = turn * *position;
+    }
+    let normal = Dir3::new(turn * Vec3::Y).unwrap();
+    bed.obstacles = vec![still(Shape::HalfSpace(InfinitePlane3d { normal }), Vec3::ZERO)];
+    bed.run(2.0);
+    bed.centre().length()
+}
+
+#[test]
+fn friction_holds_below_its_angle_and_lets_slide_above() {
+    for friction in [0.2_f32, 0.5, 0.9] {
+        let angle = ops::atan(friction);
+        assert!(slid(friction, 0.98 * angle) < 0.002, "{friction}: {}", slid(friction, 0.98 * angle));
+        assert!(slid(friction, 1.02 * angle) > 0.02, "{friction}: {}", slid(friction, 1.02 * angle));
+    }
+}
+
+#[test]
+fn a_cloth_slides_with_the_acceleration_that_friction_leaves() {
+    let (friction, slope) = (0.3, 0.6);
+    let expected = 0.5 * GRAVITY * (ops::sin(slope) - friction * ops::cos(slope)) * 4.0;
+    let way = slid(friction, slope);
+    assert!((way / expected - 1.0).abs() < 0.02, "{way} for {expected} m");
+}
+
+#[test]
+fn a_cloth_on_a_sphere_stays_on_it_outside_of_it_and_comes_to_rest() {
+    let mut bed = Bed::lying(24, Material { damping: 1.0, ..cotton(0.5, 0.005) });
+    for position in &mut bed.particles.position {
+        position.y += 0.75;
+    }
+    bed.obstacles = vec![
+        still(Shape::Sphere(Sphere::new(0.3)), Vec3::Y * 0.15),
+        still(Shape::HalfSpace(InfinitePlane3d::default()), Vec3::ZERO),
+    ];
+    for _ in 0..300 {
+        bed.step(1.0 / 60.0);
+        assert!(depth(&bed) < 1e-5, "{} m", depth(&bed));
+    }
+    assert!(bed.centre().with_y(0.0).length() < 0.05, "slid off: {}", bed.centre());
+    assert!(bed.fastest() < 0.05, "still {} m/s", bed.fastest());
+}
+
+#[test]
+fn a_cloth_dropped_flat_does_not_bounce() {
+    let mut bed = Bed::lying(6, cotton(0.5, 0.01));
+    bed.obstacles = vec![still(Shape::HalfSpace(InfinitePlane3d::default()), Vec3::NEG_Y * 0.5)];
+    bed.run(0.5);
+    for _ in 0..60 {
+        bed.step(1.0 / 60.0);
+        assert!((bed.centre().y + 0.49).abs() < 1e-4, "{}", bed.centre());
+    }
+}
+
+#[test]
+fn a_cloth_is_lifted_off_by_an_upward_push_without_sticking() {
+    let mut bed = Bed::lying(6, cotton(0.9, 0.01));
+    bed.obstacles = vec![still(Shape::HalfSpace(InfinitePlane3d::default()), Vec3::ZERO)];
+    bed.run(0.5);
+    bed.gravity = Vec3A::Y * 2.0;
+    let start = bed.centre().y;
+    bed.run(0.5);
+    let risen = bed.centre().y - start;
+    assert!((risen - 0.25).abs() < 0.01, "{risen} m");
+}
+
+/// A free cloth in the way of an obstacle that comes down at 10 m/s for a fifth of a second.
+fn struck(shape: Shape) -> Bed {
+    let mut bed = Bed { gravity: Vec3A::ZERO, ..Bed::lying(16, cotton(0.3, 0.005)) };
+    for frame in 0..12 {
+        let place = |frame: i32| Isometry3d::from_translation(Vec3::Y * (1.0 - frame as f32 * 10.0 / 60.0));
+        bed.obstacles = vec![Obstacle { shape, start: place(frame), end: place(frame + 1), friction: 1.0 }];
+        bed.step(1.0 / 60.0);
+        assert!(depth(&bed) < 1e-4, "frame {frame}: {} m", depth(&bed));
+    }
+    bed
+}
+
+#[test]
+fn an_obstacle_at_ten_metres_a_second_pushes_and_is_not_passed() {
+    for shape in [
+        Shape::Sphere(Sphere::new(0.2)),
+        Shape::Capsule(Capsule3d::new(0.1, 0.4)),
+        Shape::Cylinder(Cylinder::new(0.8, 0.005)),
+        Shape::Cuboid(Cuboid::new(1.5, 0.004, 1.5)),
+    ] {
+        let bed = struck(shape);
+        let bottom = -1.0 - shape_reach(shape);
+        let lowest = bed.particles.position.iter().map(|p| p.y).fold(0.0, f32::min);
+        assert!(lowest <= bottom + 1e-3, "{shape:?} passed: nothing below {lowest} m");
+    }
+}
+
+/// How far a shape reaches down from its centre, m.
+fn shape_reach(shape: Shape) -> f32 {
+    -shape.surface(Vec3A::NEG_Y * 10.0).distance + 10.0
+}
+
+#[test]
+fn a_turning_table_takes_a_cloth_along() {
+    let mut bed = Bed::lying(8, cotton(0.9, 0.0));
+    let speed = 1.0;
+    for frame in 0..60 {
+        let pose = |frame: i32| Isometry3d::from_rotation(Quat::from_rotation_y(speed * frame as f32 / 60.0));
+        let table = Shape::Cylinder(Cylinder::new(2.0, 0.2));
+        let lowered = |frame: i32| Isometry3d::new(Vec3::NEG_Y * 0.1, pose(frame).rotation);
+        bed.obstacles = vec![Obstacle { shape: table, start: lowered(frame), end: lowered(frame + 1), friction: 1.0 }];
+        bed.step(1.0 / 60.0);
+    }
+    let corner = bed.particles.position[0];
+    let expected = Quat::from_rotation_y(speed) * Vec3A::from(bed.topology.rest[0]);
+    assert!(corner.distance(expected) < 0.03, "{corner} for {expected}");
+}
+
+#[test]
+fn a_cloth_that_starts_inside_comes_out_without_being_thrown() {
+    let mut bed = Bed { gravity: Vec3A::ZERO, ..Bed::lying(16, cotton(0.5, 0.0)) };
+    bed.obstacles = vec![still(Shape::Sphere(Sphere::new(0.2)), Vec3::Y * 0.05)];
+    bed.run(1.0);
+    assert!(depth(&bed) < 1e-5);
+    assert!(bed.fastest() < 5.0, "{} m/s", bed.fastest());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..default() })]
+
+    #[test]
+    fn no_particle_ends_a_step_inside_an_obstacle(
+        kind in 0..5,
+        size in prop::array::uniform3(0.05_f32..0.5),
+        start in prop::array::uniform3(-1.0_f32..1.0),
+        way in prop::array::uniform3(-0.3_f32..0.3),
+        turn in -0.3_f32..0.3,
+        friction in 0.0_f32..1.0,
+    ) {
+        let shape = match kind {
+            0 => Shape::Sphere(Sphere::new(size[0])),
+            1 => Shape::Cuboid(Cuboid::new(size[0], size[1], size[2])),
+            2 => Shape::Capsule(Capsule3d::new(size[0], size[1])),
+            3 => Shape::Cylinder(Cylinder::new(size[0], size[1])),
+            _ => Shape::HalfSpace(InfinitePlane3d::default()),
+        };
+        let mut bed = Bed::lying(12, cotton(friction, 0.003));
+        for frame in 0..20 {
+            let pose = |frame: i32| Isometry3d::new(
+                Vec3::from(start) - Vec3::Y * 1.5 + Vec3::from(way) * frame as f32,
+                Quat::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), turn * frame as f32),
+            );
+            bed.obstacles = vec![Obstacle { shape, start: pose(frame), end: pose(frame + 1), friction: 1.0 }];
+            bed.step(1.0 / 60.0);
+            prop_assert!(bed.particles.is_finite());
+            prop_assert!(depth(&bed) < 1e-4, "frame {}: {} m inside", frame, depth(&bed));
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! The solver alone, without an `App`: against answers on paper, for its bits, its memory and its robustness.
+
+mod air;
+mod bench_bed;
+mod contact;
+mod convergence;
+mod determinism;
+mod memory;
+mod rates;
+mod robustness;
+mod springs;
+mod statics;
+mod tethers;
+mod topology;

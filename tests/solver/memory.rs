@@ -1,0 +1,20 @@
+//! A step doesn't allocate.
+
+use bevy_drape::{build, prelude::Fabric, solver::Method};
+
+use crate::bench_bed::Bed;
+
+#[test]
+fn a_step_allocates_nothing_once_it_has_run() {
+    for method in [Method::Xpbd, Method::Explicit] {
+        let mut bed = Bed { method, ..Bed::lying(24, Fabric::default().material().unwrap()).pinned([0, 23]) };
+        bed.tethers = build::tethers(&bed.topology, &[0, 23]);
+        bed.step(1.0 / 60.0);
+        let info = allocation_counter::measure(|| {
+            for _ in 0..10 {
+                bed.step(1.0 / 60.0);
+            }
+        });
+        assert_eq!(info.count_total, 0, "{method:?}: {info:?}");
+    }
+}
