@@ -117,7 +117,7 @@ fn struck(shape: Shape) -> Bed {
 fn an_obstacle_at_ten_metres_a_second_pushes_and_is_not_passed() {
     for shape in [
         Shape::Sphere(Sphere::new(0.2)),
-        Shape::Capsule(Capsule3d::new(0.1, 0.4)),
+        Shape::Capsule(Capsule3d::new(0.2, 0.4)),
         Shape::Cylinder(Cylinder::new(0.8, 0.005)),
         Shape::Cuboid(Cuboid::new(1.5, 0.004, 1.5)),
     ] {
