@@ -117,8 +117,8 @@ impl MovingShape {
         }
         let old_local = self.from_world_start.transform_point(previous);
         let before = self.surface(old_local);
-        let same_side = before.distance <= 0.0 || before.normal.dot(after.normal) > 0.0;
-        let (normal, depth, old_depth) = if same_side {
+        // Seen from another side, a thin or sharp shape would be left on the wrong one: the way in decides.
+        let (normal, depth, old_depth) = if before.normal.dot(after.normal) > 0.0 {
             (after.normal, -after.distance, (-before.distance).max(0.0))
         } else {
             let (entry, normal) = self.sweep(old_local, local)?;
