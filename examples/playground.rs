@@ -1,66 +1,137 @@
-//! A stand-in for the playground: flat panels where cloths will hang.
+//! The main scene: a curtain in the wind, a cloth on a ball, one on a box, and a flag that a glTF file brings.
+//!
+//! ```text
+//! cargo run --example playground
+//! cargo run --example playground -- --capture captures --frames 240 --every 240
+//! ```
 
 mod common;
 
-use std::f32::consts::FRAC_PI_2;
-
-use bevy::prelude::*;
+use bevy::{math::primitives::InfinitePlane3d, prelude::*, world_serialization::WorldInstanceReady};
+use bevy_drape::prelude::*;
 
 fn main() -> AppExit {
-    common::app("Playground", "Left drag: turn   Right drag: shift   Wheel: zoom")
-        .add_systems(Startup, (common::spawn_scenery, setup))
-        .add_systems(Update, turn)
-        .run()
+    common::app(
+        "bevy_drape playground",
+        "Left drag: turn   Right drag: shift   Wheel: zoom   R: reset   W: wind   Space: pause",
+    )
+    .add_plugins(ClothPlugin::default())
+    .add_systems(Startup, (common::spawn_scenery, setup))
+    .add_systems(Update, (reset, calm, pause))
+    .run()
 }
 
-#[derive(Component)]
-struct Panel;
+fn setup(mut commands: Commands, mut studio: common::Studio, server: Res<AssetServer>) {
+    common::spawn_camera(&mut commands, Vec3::new(0.4, 1.75, 6.2), Vec3::new(0.0, 1.05, 0.0));
+    commands.spawn(ClothCollider::from(InfinitePlane3d::default()));
 
-fn setup(
-    mut commands: Commands,
-    server: Res<AssetServer>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    mut images: ResMut<Assets<Image>>,
-) {
-    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.7, 6.5), Vec3::new(0.0, 1.1, 0.0));
-    let panel = meshes.add(
-        Plane3d::new(Vec3::Z, Vec2::splat(0.7))
-            .mesh()
-            .build()
-            .with_generated_tangents()
-            .unwrap_or_else(|_| Plane3d::new(Vec3::Z, Vec2::splat(0.7)).into()),
+    spawn_curtain(&mut commands, &mut studio);
+    spawn_draped(
+        &mut commands,
+        &mut studio,
+        Sphere::new(0.36),
+        Vec3::new(-0.75, 0.36, 0.9),
+        Color::srgb(0.16, 0.38, 0.62),
     );
-    for (x, colour) in [(-1.8, Color::srgb(0.72, 0.16, 0.14)), (0.0, Color::srgb(0.14, 0.36, 0.62))] {
-        commands.spawn((
-            Mesh3d(panel.clone()),
-            MeshMaterial3d(materials.add(common::fabric_material(&mut images, colour, Vec2::splat(6.0)))),
-            Transform::from_xyz(x, 1.2, 0.0).with_rotation(Quat::from_rotation_y(0.4 * x)),
-            Panel,
+    spawn_draped(
+        &mut commands,
+        &mut studio,
+        Cuboid::new(0.7, 0.6, 0.7),
+        Vec3::new(0.75, 0.3, 0.7),
+        Color::srgb(0.88, 0.72, 0.32),
+    );
+    spawn_flag(&mut commands, &mut studio, &server);
+    // It blows on the curtain and the flag and leaves the two cloths in front alone.
+    commands.spawn((
+        Wind {
+            velocity: Vec3::new(4.5, 0.0, 1.2),
+            region: WindShape::Cuboid(Cuboid::new(8.0, 4.0, 2.4)),
+            gusts: 0.5,
+            turbulence: 0.2,
+            ..default()
+        },
+        Transform::from_xyz(0.0, 2.0, -1.4),
+    ));
+}
+
+/// A curtain that two corners hold on a rod.
+fn spawn_curtain(commands: &mut Commands, studio: &mut common::Studio) {
+    let top = Vec3::new(-1.9, 2.3, -0.8);
+    studio.spawn_rod(commands, top - Vec3::X * 0.85, top + Vec3::X * 0.85, 0.02);
+    commands.spawn((
+        studio.cloth(ClothGrid::new(1.5, 1.9, 40, 50), Color::srgb(0.72, 0.16, 0.14)),
+        Cloth { substeps: 12, ..default() },
+        Fabric { density: 0.15, bend_stiffness: 5.0, ..default() },
+        Pins::edge_corners(ClothEdge::Top),
+        Transform::from_translation(top - Vec3::Y * 0.95),
+    ));
+}
+
+/// A cloth that falls on an obstacle.
+fn spawn_draped<S>(commands: &mut Commands, studio: &mut common::Studio, solid: S, place: Vec3, color: Color)
+where
+    S: Into<Mesh> + Into<ClothCollider> + Copy,
+{
+    commands.spawn((
+        studio.solid(solid, Color::srgb(0.82, 0.80, 0.76)),
+        Into::<ClothCollider>::into(solid),
+        Transform::from_translation(place),
+    ));
+    commands.spawn((
+        studio.cloth(ClothGrid::new(1.25, 1.25, 48, 48).lying(), color),
+        Cloth { substeps: 12, ..default() },
+        Fabric { bend_stiffness: 10.0, thickness: 0.008, friction: 0.6, ..default() },
+        Transform::from_translation(place + Vec3::Y * 0.75).with_rotation(Quat::from_rotation_y(0.5)),
+    ));
+}
+
+/// A pole, and a model of which one mesh is to be cloth.
+fn spawn_flag(commands: &mut Commands, studio: &mut common::Studio, server: &AssetServer) {
+    let foot = Vec3::new(1.25, 0.0, -0.9);
+    studio.spawn_rod(commands, foot, foot + Vec3::Y * 2.65, 0.025);
+    commands
+        .spawn((
+            WorldAssetRoot(server.load(GltfAssetLabel::Scene(0).from_asset("flag.glb"))),
+            Transform::from_translation(foot + Vec3::new(0.03, 1.6, 0.0)),
+        ))
+        .observe(make_cloth_of_model);
+}
+
+/// Runs once the model is there: its meshes become cloth, pinned where its attribute says.
+fn make_cloth_of_model(
+    ready: On<WorldInstanceReady>,
+    mut commands: Commands,
+    children: Query<&Children>,
+    meshes: Query<(), With<Mesh3d>>,
+) {
+    for entity in children.iter_descendants(ready.entity).filter(|&entity| meshes.contains(entity)) {
+        commands.entity(entity).insert((
+            Cloth { substeps: 12, ..default() },
+            Fabric { density: 0.12, bend_stiffness: 4.0, ..default() },
+            Pins::attribute(ATTRIBUTE_PIN),
         ));
     }
-    commands.spawn((
-        Mesh3d(meshes.add(Sphere::new(0.35))),
-        MeshMaterial3d(materials.add(Color::srgb(0.85, 0.62, 0.18))),
-        Transform::from_xyz(-0.8, 0.35, 1.4),
-    ));
-    commands.spawn((
-        Mesh3d(panel),
-        MeshMaterial3d(materials.add(common::fabric_material(
-            &mut images,
-            Color::srgb(0.90, 0.86, 0.78),
-            Vec2::splat(6.0),
-        ))),
-        Transform::from_xyz(0.9, 0.4, 1.3).with_rotation(Quat::from_rotation_x(-0.9 * FRAC_PI_2)),
-    ));
-    commands.spawn((
-        WorldAssetRoot(server.load(GltfAssetLabel::Scene(0).from_asset("flag.glb"))),
-        Transform::from_xyz(1.3, 2.2, 0.0),
-    ));
 }
 
-fn turn(time: Res<Time>, mut panels: Query<&mut Transform, With<Panel>>) {
-    for mut panel in &mut panels {
-        panel.rotate_y(0.3 * time.delta_secs());
+fn reset(keys: Res<ButtonInput<KeyCode>>, mut commands: Commands, cloths: Query<Entity, With<Cloth>>) {
+    if keys.just_pressed(KeyCode::KeyR) {
+        for cloth in &cloths {
+            commands.entity(cloth).reset_cloth();
+        }
+    }
+}
+
+/// Turns the wind off and on again.
+fn calm(keys: Res<ButtonInput<KeyCode>>, mut winds: Query<&mut Wind>, mut calmed: Local<Vec3>) {
+    if keys.just_pressed(KeyCode::KeyW) {
+        for mut wind in &mut winds {
+            core::mem::swap(&mut wind.velocity, &mut calmed);
+        }
+    }
+}
+
+fn pause(keys: Res<ButtonInput<KeyCode>>, mut time: ResMut<Time<Virtual>>) {
+    if keys.just_pressed(KeyCode::Space) {
+        if time.is_paused() { time.unpause() } else { time.pause() }
     }
 }

@@ -7,7 +7,8 @@ use clap::Parser;
 
 /// Shows a scene in a window, or writes it to picture files.
 #[derive(Parser)]
-#[command(version)]
+// Scripts give their own values first and then those of their user.
+#[command(version, args_override_self = true)]
 pub struct Arguments {
     /// Open no window and write pictures to this directory
     #[arg(long, value_name = "DIR")]

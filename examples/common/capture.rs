@@ -107,34 +107,38 @@ pub fn create_directory(directory: &Path) -> Result<(), String> {
         .map_err(|error| format!("Cannot create the directory {}: {error}", directory.display()))
 }
 
-/// Marks the cameras that draw into the pictures.
+/// A camera that draws into the pictures, and the part of them that it fills.
 #[derive(Component)]
-struct Photographer;
+struct Photographer {
+    viewport: Option<Viewport>,
+}
 
 /// A camera for the window, which doesn't exist, draws into the picture instead; so does the user interface.
 fn retarget(
     add: On<Add, Camera>,
     capture: Res<Capture>,
-    mut targets: Query<&mut RenderTarget>,
+    mut cameras: Query<(&Camera, &mut RenderTarget)>,
     interface: Query<(), With<IsDefaultUiCamera>>,
     mut commands: Commands,
 ) {
-    let Ok(mut target) = targets.get_mut(add.entity) else {
+    let Ok((camera, mut target)) = cameras.get_mut(add.entity) else {
         return;
     };
     if !matches!(*target, RenderTarget::Window(WindowRef::Primary)) {
         return;
     }
     *target = RenderTarget::Image(capture.target.clone().into());
-    let mut camera = commands.entity(add.entity);
-    camera.insert(Photographer);
+    let mut entity = commands.entity(add.entity);
+    if camera.is_active {
+        entity.insert(Photographer { viewport: camera.viewport.clone() });
+    }
     if interface.is_empty() {
-        camera.insert(IsDefaultUiCamera);
+        entity.insert(IsDefaultUiCamera);
     }
 }
 
 /// A software renderer takes a second over each frame, so those that nobody will see are simulated but not drawn.
-fn begin_frame(mut capture: ResMut<Capture>, mut cameras: Query<&mut Camera, With<Photographer>>) {
+fn begin_frame(mut capture: ResMut<Capture>, mut cameras: Query<(&mut Camera, &Photographer)>) {
     if capture.stage == Stage::Running {
         capture.frame += 1;
     }
@@ -144,11 +148,13 @@ fn begin_frame(mut capture: ResMut<Capture>, mut cameras: Query<&mut Camera, Wit
         Stage::Writing => false,
     };
     // Only drawing brings up the pipelines to wait for, but a few pixels do.
-    let viewport = (capture.stage == Stage::Loading)
-        .then(|| Viewport { physical_size: UVec2::splat(SMALLEST_VIEWPORT), ..default() });
-    for mut camera in &mut cameras {
+    let a_few_pixels = Viewport { physical_size: UVec2::splat(SMALLEST_VIEWPORT), ..default() };
+    for (mut camera, photographer) in &mut cameras {
         camera.is_active = is_drawn;
-        camera.viewport.clone_from(&viewport);
+        camera.viewport = match capture.stage {
+            Stage::Loading => Some(a_few_pixels.clone()),
+            Stage::Running | Stage::Writing => photographer.viewport.clone(),
+        };
     }
 }
 
@@ -193,10 +199,10 @@ fn take_picture(commands: &mut Commands, capture: &mut Capture) {
     capture.unwritten += 1;
     commands.spawn(Screenshot::image(capture.target.clone())).observe(
         move |shot: On<ScreenshotCaptured>, mut capture: ResMut<Capture>, mut exit: MessageWriter<AppExit>| {
-            capture.unwritten = capture.unwritten.saturating_sub(1);
             capture.since = Instant::now();
-            if let Err(cause) = write_picture(&shot.image, &path) {
-                give_up(&mut exit, &cause);
+            match write_picture(&shot.image, &path) {
+                Ok(()) => capture.unwritten = capture.unwritten.saturating_sub(1),
+                Err(cause) => give_up(&mut exit, &cause),
             }
         },
     );

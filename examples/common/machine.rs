@@ -20,16 +20,27 @@ pub fn graphics_adapter() -> Result<(), String> {
     }
 }
 
-/// Whether a window can be opened. The variable may name a display that isn't there, so this really connects.
+/// Why no window can be opened, if so. The variable may name a display that isn't there, so this really connects.
 #[cfg(target_os = "linux")]
-pub fn has_display() -> bool {
-    x11rb::connect(None).is_ok()
+pub fn window_obstacle() -> Option<&'static str> {
+    if x11rb::connect(None).is_err() {
+        return Some("there is no display to open a window on");
+    }
+    let has_libraries = x11_dl::xlib::Xlib::open().is_ok()
+        && x11_dl::xlib_xcb::Xlib_xcb::open().is_ok()
+        && x11_dl::xinput2::XInput2::open().is_ok()
+        && x11_dl::xcursor::Xcursor::open().is_ok()
+        && xkbcommon_dl::x11::xkbcommon_x11_option().is_some();
+    (!has_libraries).then_some(
+        "windows need system libraries that are missing (Debian and Ubuntu: apt-get install libx11-xcb1 libxi6 \
+         libxcursor1 libxkbcommon-x11-0)",
+    )
 }
 
-/// Whether a window can be opened.
+/// Why no window can be opened, if so.
 #[cfg(not(target_os = "linux"))]
-pub fn has_display() -> bool {
-    true
+pub fn window_obstacle() -> Option<&'static str> {
+    None
 }
 
 /// The name that cargo gave to this program.

@@ -9,6 +9,7 @@ mod loading;
 mod machine;
 mod mipmaps;
 mod scenery;
+mod studio;
 mod weave;
 
 use std::path::PathBuf;
@@ -16,30 +17,29 @@ use std::path::PathBuf;
 use bevy::{
     app::ScheduleRunnerPlugin,
     gltf::GltfPlugin,
-    mesh::{MeshVertexAttribute, VertexFormat},
     prelude::*,
     render::RenderPlugin,
     window::{ExitCondition, WindowResolution},
     winit::WinitPlugin,
 };
+use bevy_drape::prelude::ATTRIBUTE_PIN;
 use bevy_panorbit_camera::PanOrbitCameraPlugin;
 use clap::Parser;
 
 use arguments::Arguments;
 use capture::CapturePlugin;
 pub use scenery::{spawn_camera, spawn_ground, spawn_scenery, spawn_sky, spawn_sun};
+pub use studio::Studio;
 pub use weave::{fabric_material, woven, woven_normals};
 
-pub const ATTRIBUTE_PIN: MeshVertexAttribute = MeshVertexAttribute::new("Pin", 0x6472_6170_6550, VertexFormat::Float32);
-
 /// An app that shows its scene in a window, or writes it to picture files where `--capture` asks for them or where
-/// there is no display to open a window on.
+/// no window can be opened.
 pub fn app(title: &str, help: &str) -> App {
     let arguments = Arguments::parse();
     if let Err(cause) = machine::graphics_adapter() {
         fail(cause);
     }
-    let directory = arguments.capture.clone().or_else(directory_without_a_display);
+    let directory = arguments.capture.clone().or_else(directory_instead_of_window);
 
     let mut app = App::new();
     match directory {
@@ -72,12 +72,11 @@ fn fail(cause: String) -> ! {
     std::process::exit(1)
 }
 
-fn directory_without_a_display() -> Option<PathBuf> {
-    if machine::has_display() {
-        return None;
-    }
+/// Pictures are better than nothing.
+fn directory_instead_of_window() -> Option<PathBuf> {
+    let obstacle = machine::window_obstacle()?;
     let directory = PathBuf::from("captures").join(machine::example_name());
-    println!("There is no display to open a window on: writing pictures to {} instead.", directory.display());
+    println!("Writing pictures to {}, because {obstacle}.", directory.display());
     Some(directory)
 }
 

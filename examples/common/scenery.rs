@@ -5,7 +5,7 @@ use bevy::{
     light::{
         CascadeShadowConfigBuilder, DirectionalLightShadowMap, EnvironmentMapLight, NotShadowCaster, NotShadowReceiver,
     },
-    math::Affine2,
+    math::{Affine2, ops::powf},
     mesh::VertexAttributeValues,
     pbr::{DistanceFog, FogFalloff},
     prelude::*,
@@ -61,7 +61,14 @@ pub fn spawn_camera(commands: &mut Commands, eye: Vec3, look_at: Vec3) -> Entity
             // The only one that keeps the colours of cloth as its material gives them.
             Tonemapping::KhronosPbrNeutral,
             DistanceFog { color: HORIZON.into(), falloff: FogFalloff::Linear { start: 12.0, end: 90.0 }, ..default() },
-            PanOrbitCamera { focus: look_at, target_focus: look_at, ..default() },
+            PanOrbitCamera {
+                focus: look_at,
+                target_focus: look_at,
+                // Nothing is to be seen from under the ground.
+                pitch_lower_limit: Some(-0.15),
+                zoom_upper_limit: Some(60.0),
+                ..default()
+            },
         ))
         .queue(light_by_sky)
         .id()
@@ -144,7 +151,7 @@ pub fn spawn_sky(commands: &mut Commands, meshes: &mut Assets<Mesh>, materials: 
 
 fn sky_colour(direction: Vec3) -> LinearRgba {
     // Most of the change happens low, where cameras that look at cloth see the sky.
-    let height = direction.y.max(0.0).powf(0.6);
+    let height = powf(direction.y.max(0.0), 0.6);
     let towards_sun = direction.dot(SUN.normalize()).max(0.0).powi(6);
     HORIZON.mix(&ZENITH, height) + SUN_COLOUR.to_linear() * (0.25 * towards_sun * height)
 }

@@ -2,7 +2,10 @@
 
 use std::f32::consts::PI;
 
-use bevy::{math::Affine2, prelude::*};
+use bevy::{
+    math::{Affine2, ops::cos},
+    prelude::*,
+};
 
 use super::mipmaps::{Texels, tile};
 
@@ -83,8 +86,8 @@ impl Weave {
         let is_warp = (column as i32 + row as i32) % 2 == 0;
         let (from_warp_axis, from_weft_axis) = (x - column - 0.5, y - row - 0.5);
         let (across, along) = if is_warp { (from_warp_axis, from_weft_axis) } else { (from_weft_axis, from_warp_axis) };
-        let round = (PI * across).cos().max(0.0).sqrt();
-        let bow = 0.6 + 0.4 * (PI * along).cos();
+        let round = cos(PI * across).max(0.0).sqrt();
+        let bow = 0.6 + 0.4 * cos(PI * along);
         Self {
             height: round * bow,
             is_warp,

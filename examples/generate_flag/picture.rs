@@ -2,6 +2,7 @@
 
 use std::{f32::consts::TAU, io::Cursor};
 
+use bevy::math::ops::cos;
 use image::{
     ImageError, Rgb, RgbImage,
     codecs::png::{CompressionType, FilterType, PngEncoder},
@@ -55,7 +56,7 @@ fn along_flag(u: f32) -> f32 {
 /// The colour at `x` metres from the hoist and `y` metres below the top.
 fn design(x: f32, y: f32) -> Colour {
     // Two swags whose ends meet under the sun, right where the UV seam is.
-    let wave = 0.05 * (TAU * x / (SIZE[0] / 2.0)).cos();
+    let wave = 0.05 * cos(TAU * x / (SIZE[0] / 2.0));
     let below = y - 0.62 + wave;
     let from_sun = (x - SIZE[0] / 2.0).hypot(y - 0.44);
     match below {
