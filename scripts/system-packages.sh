@@ -1,5 +1,8 @@
 # Sourced by the other scripts: sees to what Bevy needs from the system to build and to run.
 
+# Software renderers report an error where this isn't set, though they draw all the same.
+export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
+
 debian_packages=(
     # Rust links with the C compiler.
     gcc libc6-dev
@@ -19,7 +22,7 @@ install_system_packages() {
 
     local package missing=()
     for package in "${debian_packages[@]}"; do
-        if ! dpkg -s "$package" 2>/dev/null | grep -q '^Status: install ok installed$'; then
+        if [[ "$(dpkg-query --show --showformat='${Status}' "$package" 2>/dev/null)" != "install ok installed" ]]; then
             missing+=("$package")
         fi
     done

@@ -24,10 +24,11 @@ struct Expectation {
 }
 
 #[rustfmt::skip]
-const EXPECTATIONS: [Expectation; 3] = [
-    Expectation { name: "red panel", region: [0.15, 0.25, 0.40, 0.75], hue: [345.0, 20.0], saturation: [0.35, 1.0], share: 0.25 },
-    Expectation { name: "blue panel", region: [0.38, 0.25, 0.62, 0.60], hue: [195.0, 235.0], saturation: [0.30, 1.0], share: 0.25 },
-    Expectation { name: "flag", region: [0.60, 0.10, 0.90, 0.60], hue: [175.0, 205.0], saturation: [0.30, 1.0], share: 0.10 },
+const EXPECTATIONS: [Expectation; 4] = [
+    Expectation { name: "curtain", region: [0.24, 0.26, 0.40, 0.60], hue: [345.0, 15.0], saturation: [0.5, 1.0], share: 0.20 },
+    Expectation { name: "cloth on the ball", region: [0.32, 0.58, 0.47, 0.76], hue: [195.0, 225.0], saturation: [0.4, 1.0], share: 0.25 },
+    Expectation { name: "tablecloth", region: [0.53, 0.59, 0.65, 0.74], hue: [35.0, 50.0], saturation: [0.4, 1.0], share: 0.30 },
+    Expectation { name: "flag", region: [0.62, 0.38, 0.79, 0.59], hue: [180.0, 205.0], saturation: [0.4, 1.0], share: 0.15 },
 ];
 
 #[test]
@@ -43,17 +44,17 @@ fn the_playground_shows_its_cloths() {
         let share = share_of_colour(&picture, expectation);
         assert!(
             share >= expectation.share,
-            "{}: {:.1} % of its region have its colour, expected at least {:.1} %",
+            "{}: {:.1} % of its region have its colour, expected at least {:.1} %; see {}",
             expectation.name,
             100.0 * share,
-            100.0 * expectation.share
+            100.0 * expectation.share,
+            picture_path().display()
         );
     }
 }
 
 fn capture_playground() -> RgbImage {
-    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("playground_picture");
-    let picture = directory.join("frame_0060.png");
+    let picture = picture_path();
     // A picture from an earlier run must not pass for this one's.
     let _ = std::fs::remove_file(&picture);
 
@@ -62,7 +63,7 @@ fn capture_playground() -> RgbImage {
         .args(["--frames", "60", "--every", "60"])
         .args(["--size", &format!("{}x{}", SIZE.0, SIZE.1)])
         .arg("--capture")
-        .arg(&directory)
+        .arg(directory())
         .output()
         .unwrap_or_else(|error| {
             panic!("cannot run {}: {error}; `cargo build --example playground` builds it", program.display())
@@ -74,6 +75,14 @@ fn capture_playground() -> RgbImage {
         String::from_utf8_lossy(&output.stderr)
     );
     image::open(&picture).unwrap_or_else(|error| panic!("cannot read {}: {error}", picture.display())).to_rgb8()
+}
+
+fn directory() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("playground_picture")
+}
+
+fn picture_path() -> PathBuf {
+    directory().join("frame_0060.png")
 }
 
 /// `cargo test` builds the examples into a folder next to that of the tests.
