@@ -29,7 +29,7 @@ const MOST_TETHERS: usize = 4;
 /// A pin adds nothing where a nearer one is closer to it than this share of its own distance.
 const TELLING_APART: f32 = 0.5;
 
-/// Tethers of every particle to the nearest few of `pins` (indices of particles), sorted by particle.
+/// Tethers of every particle to the nearest few of `pins` (indices of particles), sorted by pin.
 ///
 /// A tether is as long as the cloth between its ends; a particle that no pin can reach has none.
 pub fn tethers(topology: &Topology, pins: &[u32]) -> Vec<Tether> {
@@ -39,16 +39,16 @@ pub fn tethers(topology: &Topology, pins: &[u32]) -> Vec<Tether> {
     }
     search.run();
     let is_pin = |particle: &usize| search.labels[*particle].first().is_some_and(|l| l.distance == 0.0);
-    (0..topology.particle_count())
-        .filter(|particle| !is_pin(particle))
+    let held = (0..topology.particle_count()).filter(|particle| !is_pin(particle));
+    let mut tethers: Vec<Tether> = held
         .flat_map(|particle| {
-            search.labels[particle].iter().map(move |label| Tether {
-                particle: particle as u32,
-                pin: label.pin,
-                length: label.distance,
-            })
+            let labels = search.labels[particle].iter();
+            labels.map(move |label| Tether { particle: particle as u32, pin: label.pin, length: label.distance })
         })
-        .collect()
+        .collect();
+    // Tethers in a row are of different particles, so none waits for the one before.
+    tethers.sort_unstable_by_key(|tether| (tether.pin, tether.particle));
+    tethers
 }
 
 /// A pin and how far it is.

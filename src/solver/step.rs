@@ -71,7 +71,10 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
 /// Symplectic Euler: velocities from forces (N) and gravity (m/s²), then positions from the new velocities.
 fn integrate(particles: &mut Particles, force: &[Vec3A], gravity: Vec3A, decay: f32, h: f32) {
     let Particles { position, previous, velocity, inverse_mass, .. } = particles;
-    for i in 0..position.len() {
+    let count = position.len();
+    let (previous, velocity) = (&mut previous[..count], &mut velocity[..count]);
+    let (inverse_mass, force) = (&inverse_mass[..count], &force[..count]);
+    for i in 0..count {
         previous[i] = position[i];
         let w = inverse_mass[i];
         if w > 0.0 {
@@ -88,7 +91,9 @@ fn integrate(particles: &mut Particles, force: &[Vec3A], gravity: Vec3A, decay: 
 fn derive_velocities(particles: &mut Particles, h: f32) {
     let Particles { position, previous, velocity, .. } = particles;
     let rate = 1.0 / h;
-    for i in 0..position.len() {
+    let count = position.len();
+    let (previous, velocity) = (&previous[..count], &mut velocity[..count]);
+    for i in 0..count {
         let predicted = previous[i] + velocity[i] * h;
         velocity[i] += (position[i] - predicted) * rate;
     }

@@ -35,18 +35,23 @@ pub fn solve(particles: &mut Particles, topology: &Topology, material: &Material
 
 fn solve_batch<const DAMPED: bool>(particles: &mut Particles, springs: &[Spring], k: f32, c: f32) {
     let Particles { position, previous, inverse_mass, .. } = particles;
+    // Slices of one length let one bounds check serve all three.
+    let count = position.len();
+    let (position, previous, inverse_mass) = (&mut position[..], &previous[..count], &inverse_mass[..count]);
     for &Spring { a, b, rest } in springs {
         let (a, b) = (a as usize, b as usize);
         let (wa, wb) = (inverse_mass[a], inverse_mass[b]);
         let (xa, xb) = (position[a], position[b]);
         let along = xa - xb;
         let length = along.length().max(SHORTEST);
-        let mut push = k * (rest - length);
+        let shrink = (rest - length) / length;
+        // This division doesn't wait for the root above.
+        let share = 1.0 / ((k + c) * (wa + wb) + 1.0);
+        let mut push = k * shrink;
         if DAMPED {
-            push -= c * along.dot(along - (previous[a] - previous[b])) / length;
+            push -= c * along.dot(along - (previous[a] - previous[b])) / (length * length);
         }
-        // n lambda, in one division.
-        let impulse = along * (push / (((k + c) * (wa + wb) + 1.0) * length));
+        let impulse = along * (push * share);
         position[a] = xa + impulse * wa;
         position[b] = xb - impulse * wb;
     }

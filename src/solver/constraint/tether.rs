@@ -22,10 +22,12 @@ pub struct Tether {
 /// Pulls every particle that is too far out back to the end of its tether.
 pub fn solve(particles: &mut Particles, tethers: &[Tether], slack: f32) {
     let Particles { position, inverse_mass, .. } = particles;
+    let inverse_mass = &inverse_mass[..position.len()];
+    let longer = 1.0 + slack;
     for &Tether { particle, pin, length } in tethers {
         let particle = particle as usize;
         let pin = position[pin as usize];
-        let reach = length * (1.0 + slack);
+        let reach = length * longer;
         let away = position[particle] - pin;
         let distance_squared = away.length_squared();
         if distance_squared > reach * reach && inverse_mass[particle] > 0.0 {
