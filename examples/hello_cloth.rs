@@ -32,8 +32,8 @@ fn setup(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, mut materials
         Mesh3d(meshes.add(Sphere::new(0.3))),
         MeshMaterial3d(materials.add(Color::srgb(0.85, 0.82, 0.76))),
         ClothCollider::from(Sphere::new(0.3)),
-        Transform::from_xyz(0.0, 0.6, -0.3),
+        Transform::from_xyz(0.0, 0.8, 0.0),
     ));
-    commands.spawn(Wind { velocity: Vec3::Z * 2.0, ..default() });
-    common::spawn_camera(&mut commands, Vec3::new(2.0, 1.5, 2.6), Vec3::new(0.0, 0.8, -0.2));
+    commands.spawn(Wind { velocity: Vec3::X * 1.5, ..default() });
+    common::spawn_camera(&mut commands, Vec3::new(1.9, 1.7, 2.3), Vec3::new(0.0, 0.85, 0.0));
 }

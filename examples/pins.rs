@@ -6,7 +6,7 @@ use bevy::{math::ops, prelude::*};
 use bevy_drape::prelude::*;
 
 fn main() -> AppExit {
-    common::app("Pins", "An edge, two corners, by a function, to a moving bar; the last one lets go and catches itself")
+    common::app("Pins", "An edge, two corners, chosen by a function, a moving bar, and one that comes and goes")
         .add_plugins(ClothPlugin::default())
         .add_systems(Startup, (common::spawn_scenery, setup))
         .add_systems(FixedUpdate, (swing, let_go))
@@ -22,7 +22,7 @@ struct Swinging;
 struct LettingGo;
 
 fn setup(mut commands: Commands, mut studio: common::Studio) {
-    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.7, 5.6), Vec3::new(0.0, 1.35, 0.0));
+    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.6, 4.6), Vec3::new(0.0, 1.3, 0.0));
     let place = |i: i32| Vec3::new(1.15 * i as f32, 1.5, 0.0);
     let bar = studio.spawn_rod(
         &mut commands,
@@ -53,7 +53,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
             cloth.insert(LettingGo);
         }
     }
-    commands.spawn(Wind { velocity: Vec3::new(0.5, 0.0, 1.5), ..default() });
+    commands.spawn(Wind { velocity: Vec3::new(0.6, 0.0, 1.2), gusts: 0.8, turbulence: 0.5, ..default() });
 }
 
 fn swing(time: Res<Time>, mut bars: Query<&mut Transform, With<Swinging>>) {

@@ -22,7 +22,7 @@ fn main() -> AppExit {
 }
 
 fn setup(mut commands: Commands, mut studio: common::Studio, server: Res<AssetServer>) {
-    common::spawn_camera(&mut commands, Vec3::new(0.4, 1.75, 6.2), Vec3::new(0.0, 1.05, 0.0));
+    common::spawn_camera(&mut commands, Vec3::new(0.5, 1.6, 5.2), Vec3::new(0.1, 1.1, 0.0));
     commands.spawn(ClothCollider::from(InfinitePlane3d::default()));
 
     spawn_curtain(&mut commands, &mut studio);
@@ -41,23 +41,23 @@ fn setup(mut commands: Commands, mut studio: common::Studio, server: Res<AssetSe
         Color::srgb(0.88, 0.72, 0.32),
     );
     spawn_flag(&mut commands, &mut studio, &server);
-    // It blows on the curtain and the flag and leaves the two cloths in front alone.
+    // Each wind blows in a box of its own and leaves the two cloths in front alone.
+    spawn_wind(&mut commands, Vec3::new(0.9, 0.0, 2.2), Vec3::new(-1.3, 1.3, -0.9));
+    spawn_wind(&mut commands, Vec3::new(6.0, 0.0, 1.2), Vec3::new(2.1, 2.0, -0.9));
+}
+
+fn spawn_wind(commands: &mut Commands, velocity: Vec3, place: Vec3) {
+    let region = WindShape::Cuboid(Cuboid::new(2.6, 2.8, 2.6));
     commands.spawn((
-        Wind {
-            velocity: Vec3::new(4.5, 0.0, 1.2),
-            region: WindShape::Cuboid(Cuboid::new(8.0, 4.0, 2.4)),
-            gusts: 0.5,
-            turbulence: 0.2,
-            ..default()
-        },
-        Transform::from_xyz(0.0, 2.0, -1.4),
+        Wind { velocity, region, edge: 0.3, gusts: 0.6, turbulence: 0.25, ..default() },
+        Transform::from_translation(place),
     ));
 }
 
 /// A curtain that two corners hold on a rod.
 fn spawn_curtain(commands: &mut Commands, studio: &mut common::Studio) {
-    let top = Vec3::new(-1.9, 2.3, -0.8);
-    studio.spawn_rod(commands, top - Vec3::X * 0.85, top + Vec3::X * 0.85, 0.02);
+    let top = Vec3::new(-1.35, 2.3, -0.9);
+    studio.spawn_rod(commands, top - Vec3::X * 0.8, top + Vec3::X * 0.8, 0.02);
     commands.spawn((
         studio.cloth(ClothGrid::new(1.5, 1.9, 40, 50), Color::srgb(0.72, 0.16, 0.14)),
         Cloth { substeps: 12, ..default() },

@@ -100,7 +100,10 @@ impl Plugin for ClothPlugin {
                     .before(AssetEventSystems)
                     .run_if(has_what_it_needs),
             )
-            .add_systems(PreUpdate, build::system::build_cloths.in_set(ClothSystems::Prepare))
+            .add_systems(
+                PreUpdate,
+                (build::system::warn_without_mesh, build::system::build_cloths).in_set(ClothSystems::Prepare),
+            )
             .add_systems(
                 self.schedule,
                 (

@@ -10,6 +10,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+mod app;
 mod measure;
 mod scene;
 
@@ -29,6 +30,20 @@ enum Experiment {
         /// What is pinned
         #[arg(long, value_enum, default_value = "corners")]
         pins: PinnedPart,
+    },
+    /// What a frame costs in a headless Bevy app: an app without cloth, one with the hanging cloth, and its solver
+    App {
+        #[command(flatten)]
+        options: Options,
+    },
+    /// What a frame costs with a hundred flags of 32 x 20 particles in the wind
+    Many {
+        /// Frames of 1/60 s
+        #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..))]
+        frames: u32,
+        /// Steps all cloths on one thread
+        #[arg(long)]
+        single_threaded: bool,
     },
     /// The same cloth falls on a sphere over a ground
     Drape {
@@ -91,11 +106,13 @@ enum Switch {
 
 fn main() -> ExitCode {
     let Cli { experiment } = Cli::parse();
-    let (name, options, scene) = match &experiment {
-        Experiment::Hang { options, pins } => ("hang", options, scene::hang(options, *pins)),
-        Experiment::Drape { options } => ("drape", options, scene::drape(options)),
+    let result = match &experiment {
+        Experiment::Hang { options, pins } => measure::run("hang", options, scene::hang(options, *pins)),
+        Experiment::Drape { options } => measure::run("drape", options, scene::drape(options)),
+        Experiment::App { options } => app::one_cloth(options),
+        Experiment::Many { frames, single_threaded } => Ok(app::many_flags(*frames, *single_threaded)),
     };
-    match measure::run(name, options, scene) {
+    match result {
         Ok(line) => {
             println!("{line}");
             ExitCode::SUCCESS

@@ -89,7 +89,8 @@ fn measure(scene: &Scene, microseconds: f64) -> Frame {
     }
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+/// The middle one of `values`.
+pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     values[values.len() / 2]
 }

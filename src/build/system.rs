@@ -40,23 +40,26 @@ pub(crate) struct Candidate {
     own_mesh: Option<&'static ClothMesh>,
 }
 
+/// Says so where `Cloth` is on an entity that has no mesh, as the root of a loaded scene has none.
+pub(crate) fn warn_without_mesh(cloths: Query<Entity, (Added<Cloth>, Without<Mesh3d>)>) {
+    for entity in &cloths {
+        warn!(
+            "cloth {entity} has no Mesh3d and waits for one; insert Cloth next to the Mesh3d, in a loaded scene on the \
+             entity that carries it"
+        );
+    }
+}
+
 /// Builds what waits, rebuilds what has changed, tries again what failed.
 pub(crate) fn build_cloths(
     mut commands: Commands,
     mut candidates: Query<Candidate>,
-    without_mesh: Query<Entity, (Added<Cloth>, Without<Mesh3d>)>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut mesh_events: MessageReader<AssetEvent<Mesh>>,
     assets: Option<Res<AssetServer>>,
     mut cache: ResMut<TopologyCache>,
     poses: Poses,
 ) {
-    for entity in &without_mesh {
-        warn!(
-            "cloth {entity} has no Mesh3d and waits for one; insert Cloth next to the Mesh3d, in a loaded scene on the \
-             entity that carries it"
-        );
-    }
     let changed: HashSet<AssetId<Mesh>> = mesh_events
         .read()
         .filter_map(|event| match event {
@@ -208,10 +211,13 @@ struct Plan {
     positions: Vec<[f32; 3]>,
 }
 
+/// A mesh, and the bits of the rotation and scale that it stands in.
+type PlanKey = (AssetId<Mesh>, [u32; 9]);
+
 /// Plans of meshes that are in use, so that a hundred flags are worked out once.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct TopologyCache {
-    plans: HashMap<(AssetId<Mesh>, [u32; 9]), (Weak<Topology>, Weak<Binding>)>,
+    plans: HashMap<PlanKey, (Weak<Topology>, Weak<Binding>)>,
 }
 
 impl TopologyCache {

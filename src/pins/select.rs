@@ -29,11 +29,14 @@ pub struct PinVertex {
     pub uv: Option<Vec2>,
 }
 
+/// What a predicate asks of a vertex.
+type Accepts = dyn Fn(&PinVertex) -> bool + Send + Sync;
+
 /// A function that chooses vertices.
 #[derive(Clone, Default, Reflect)]
 #[reflect(opaque)]
 #[reflect(Default, Clone, Debug)]
-pub struct PinPredicate(Option<Arc<dyn Fn(&PinVertex) -> bool + Send + Sync>>);
+pub struct PinPredicate(Option<Arc<Accepts>>);
 
 impl PinPredicate {
     /// Wraps a function.

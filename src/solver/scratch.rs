@@ -13,6 +13,8 @@ pub struct Scratch {
     pub(super) steady_force: Vec<Vec3A>,
     /// The steady force and the force of the springs on each particle, N.
     pub(super) force: Vec<Vec3A>,
+    /// How much of each spring's push its two ends take, 1/kg.
+    pub(super) spring_shares: Vec<[f32; 2]>,
     /// Sum of (stiffness in N/m, damping in N·s/m) of the springs at each particle.
     pub(super) spring_sums: Vec<(f32, f32)>,
 }
@@ -24,6 +26,7 @@ impl Scratch {
         self.air_velocity.resize(topology.triangles.len(), Vec3A::ZERO);
         self.steady_force.resize(particles, Vec3A::ZERO);
         self.force.resize(particles, Vec3A::ZERO);
+        self.spring_shares.resize(topology.springs.len(), [0.0; 2]);
         self.spring_sums.resize(particles, (0.0, 0.0));
     }
 }

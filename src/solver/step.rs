@@ -39,6 +39,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     let air_interval = ((1.0 / (AIR_RATE * h)) as u32).max(1);
     let mut contacts = 0;
 
+    spring::weigh(particles, topology, &ctx.material, h, &mut scratch.spring_shares);
     wind::sample_air(particles, topology, ctx, scratch);
     for substep in 0..substeps {
         let start = substep as f32 / substeps as f32;
@@ -50,7 +51,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
             Method::Xpbd => {
                 integrate(particles, &scratch.steady_force, ctx.gravity, decay, h);
                 anchor::advance(particles, ctx.anchors, end, dt);
-                spring::solve(particles, topology, &ctx.material, h);
+                spring::solve(particles, topology, &ctx.material, h, &scratch.spring_shares);
                 tether::solve(particles, ctx.tethers, ctx.tether_slack);
             }
             Method::Explicit => {

@@ -110,10 +110,6 @@ impl Bed {
         self.particles.position.iter().sum::<Vec3A>() / self.particles.len() as f32
     }
 
-    pub fn total_mass(&self) -> f32 {
-        self.topology.areas.iter().sum::<f32>() * self.material.density
-    }
-
     pub fn fastest(&self) -> f32 {
         self.particles.velocity.iter().map(|v| v.length()).fold(0.0, f32::max)
     }

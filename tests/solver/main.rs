@@ -2,6 +2,7 @@
 
 mod air;
 mod bench_bed;
+mod boundaries;
 mod contact;
 mod convergence;
 mod determinism;

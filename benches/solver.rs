@@ -1,0 +1,80 @@
+//! The solver and the build stage, without an `App`.
+//!
+//! `cargo bench --bench solver`; the lab example measures whole scenes.
+
+use bevy::{math::Mat3A, math::Vec3A, prelude::Mesh};
+use bevy_drape::{
+    build,
+    prelude::{ClothGrid, Fabric},
+    solver::{Anchor, Method, Particles, Scratch, StepContext, Topology, step},
+};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+
+fn grid(n: u32) -> Mesh {
+    ClothGrid::new(1.0, 1.0, n, n).lying().into()
+}
+
+fn topology(n: u32) -> Topology {
+    build::topology_of(&grid(n), Mat3A::IDENTITY).expect("a grid is a mesh with an area")
+}
+
+/// One frame of a cloth that hangs by two corners.
+fn hang(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("hang");
+    for (name, method, n, air) in [
+        ("xpbd", Method::Xpbd, 64, 0.0),
+        ("xpbd in air", Method::Xpbd, 64, 1.225),
+        ("explicit", Method::Explicit, 32, 0.0),
+    ] {
+        let topology = topology(n);
+        let material = Fabric::default().material().expect("valid constants");
+        let rest: Vec<Vec3A> = topology.rest.iter().copied().map(Vec3A::from).collect();
+        let pins = [0, n - 1];
+        let anchors = pins.map(|particle| {
+            let place = rest[particle as usize];
+            Anchor { particle, start: place, end: place }
+        });
+        let mut particles = Particles::at_rest(rest, &topology, &material);
+        particles.set_masses(&topology, &material, |i| pins.contains(&(i as u32)));
+        let tethers = build::tethers(&topology, &pins);
+        let ctx = StepContext {
+            dt: 1.0 / 60.0,
+            method,
+            substeps: 8,
+            max_substeps: 512,
+            material,
+            gravity: Vec3A::NEG_Y * 9.81,
+            anchors: &anchors,
+            tethers: &tethers,
+            tether_slack: 0.002,
+            obstacles: &[],
+            fluid_density: air,
+            winds: &[],
+            time: 0.0,
+        };
+        let mut scratch = Scratch::default();
+        group.bench_function(BenchmarkId::new(name, n), |bencher| {
+            bencher.iter(|| step(&mut particles, &topology, &ctx, &mut scratch));
+        });
+    }
+    group.finish();
+}
+
+/// What it takes until a mesh is cloth.
+fn build_stage(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("build");
+    for n in [32, 64] {
+        let mesh = grid(n);
+        group.bench_function(BenchmarkId::new("topology", n), |bencher| {
+            bencher.iter(|| build::topology_of(&mesh, Mat3A::IDENTITY));
+        });
+        let topology = topology(n);
+        group.bench_function(BenchmarkId::new("tethers", n), |bencher| {
+            bencher.iter(|| build::tethers(&topology, &[0, n - 1]));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, hang, build_stage);
+criterion_main!(benches);

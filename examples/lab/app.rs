@@ -1,0 +1,99 @@
+//! What cloth costs in a headless Bevy app, wall time: all that the plugin does, without a renderer.
+
+use std::{
+    io,
+    time::{Duration, Instant},
+};
+
+use bevy::{mesh::MeshPlugin, prelude::*, time::TimeUpdateStrategy};
+use bevy_drape::prelude::*;
+use serde_json::{Value, json};
+
+use super::{Options, PinnedPart, Solver, measure, scene};
+
+/// Frames before the measurement: pools and buffers fill.
+const WARM_UP: u32 = 30;
+
+/// The hanging cloth in an app, against the same app without it and against its solver alone.
+pub fn one_cloth(options: &Options) -> io::Result<Value> {
+    let solver = match options.solver {
+        Solver::Xpbd => ClothSolver::Xpbd,
+        Solver::Explicit => ClothSolver::Explicit,
+    };
+    let plugin = ClothPlugin::default().single_threaded();
+    let empty = frame_microseconds(&mut headless(plugin), options.frames);
+    let mut app = headless(plugin);
+    let mesh =
+        app.world_mut().resource_mut::<Assets<Mesh>>().add(ClothGrid::new(1.0, 1.0, options.n, options.n).lying());
+    app.world_mut().spawn((
+        Mesh3d(mesh),
+        Cloth { solver, substeps: options.substeps, tether_slack: Some(options.tether_slack), ..default() },
+        Fabric { damping: options.damping, drag: 0.0, lift: 0.0, ..default() },
+        Pins::edge_corners(ClothEdge::Top),
+    ));
+    let update = frame_microseconds(&mut app, options.frames);
+    let alone = measure::run("hang", options, scene::hang(options, PinnedPart::Corners))?;
+    let solver_alone = alone["us_per_frame_median"].as_f64().unwrap_or_default();
+    Ok(json!({
+        "scene": "app",
+        "n": options.n,
+        "substeps": alone["substeps"],
+        "us_per_update_empty": empty.round(),
+        "us_per_update": update.round(),
+        "us_solver": solver_alone,
+        "us_around_solver": (update - empty - solver_alone).round(),
+    }))
+}
+
+/// A hundred flags on their poles.
+pub fn many_flags(frames: u32, single_threaded: bool) -> Value {
+    let plugin = ClothPlugin::default();
+    let plugin = if single_threaded { plugin.single_threaded() } else { plugin };
+    let empty = frame_microseconds(&mut headless(plugin), frames);
+    let mut app = headless(plugin);
+    let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(ClothGrid::new(1.0, 0.62, 32, 20));
+    for i in 0..100 {
+        app.world_mut().spawn((
+            Mesh3d(mesh.clone()),
+            Cloth::default(),
+            Fabric { density: 0.12, bend_stiffness: 4.0, ..default() },
+            Pins::edge(ClothEdge::Left),
+            Transform::from_xyz(1.5 * (i % 10) as f32, 1.5, 1.5 * (i / 10) as f32),
+        ));
+    }
+    app.world_mut().spawn(Wind { velocity: Vec3::new(5.0, 0.0, 1.0), gusts: 0.6, turbulence: 0.25, ..default() });
+    let update = frame_microseconds(&mut app, frames);
+    json!({
+        "scene": "many",
+        "cloths": 100,
+        "particles": 100 * 32 * 20,
+        "threads": if single_threaded { 1 } else { bevy::tasks::available_parallelism() },
+        "ms_per_update_empty": empty / 1000.0,
+        "ms_per_update": update / 1000.0,
+    })
+}
+
+/// An app that steps once an update.
+fn headless(plugin: ClothPlugin) -> App {
+    let frame = Duration::from_secs_f32(scene::FRAME);
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin, plugin))
+        .insert_resource(Time::<Fixed>::from_duration(frame))
+        .insert_resource(TimeUpdateStrategy::ManualDuration(frame));
+    app.finish();
+    app.cleanup();
+    app
+}
+
+/// Median wall time of an update, µs.
+fn frame_microseconds(app: &mut App, frames: u32) -> f64 {
+    for _ in 0..WARM_UP {
+        app.update();
+    }
+    let update = |_| {
+        let start = Instant::now();
+        app.update();
+        start.elapsed().as_secs_f64() * 1e6
+    };
+    measure::median((0..frames).map(update).collect())
+}
