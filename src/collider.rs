@@ -84,7 +84,8 @@ impl ClothCollider {
         let (scale, rotation, translation) = pose.to_scale_rotation_translation();
         let shape = scaled(self.shape, scale.abs())?;
         let pose = Isometry3d::new(translation, rotation);
-        (pose.translation.is_finite() && pose.rotation.is_finite() && self.friction >= 0.0).then_some((shape, pose))
+        let is_finite = pose.translation.is_finite() && pose.rotation.is_finite() && self.friction.is_finite();
+        (is_finite && self.friction >= 0.0).then_some((shape, pose))
     }
 }
 

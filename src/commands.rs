@@ -59,11 +59,10 @@ impl ClothCommands for EntityCommands<'_> {
 
     fn teleport_cloth(&mut self, transform: Transform) -> &mut Self {
         self.queue_silenced(move |mut entity: EntityWorldMut| {
+            let Some(mut state) = entity.get_mut::<ClothState>() else { return };
+            state.requests.teleport = true;
             if let Some(mut place) = entity.get_mut::<Transform>() {
                 *place = transform;
-            }
-            if let Some(mut state) = entity.get_mut::<ClothState>() {
-                state.requests.teleport = true;
             }
         })
     }

@@ -2,8 +2,8 @@
 
 use bevy::{
     ecs::{
-        batching::BatchingStrategy,
         query::{IterQueryData, QueryFilter},
+        system::NonSendMarker,
     },
     math::Vec3A,
     prelude::*,
@@ -27,6 +27,7 @@ pub(crate) fn step_cloths(
     gravity: Res<ClothGravity>,
     obstacles: Res<Obstacles>,
     winds: Res<Winds>,
+    _main_thread: NonSendMarker,
 ) {
     for_each(&mut cloths, run.parallel, |(status, mut state)| {
         if *status == ClothStatus::Ready {
@@ -36,24 +37,34 @@ pub(crate) fn step_cloths(
 }
 
 /// Visits all matches of a query, side by side on the task pool where there is one.
+///
+/// A task a match, since a cloth is much work. The calling thread works along with the pool's. Systems that call this
+/// ask for the main thread (`NonSendMarker`), which would only wait otherwise: on two cores that is half of the machine.
 pub(crate) fn for_each<D, F>(
     query: &mut Query<D, F>,
     parallel: bool,
-    visit: impl Fn(D::Item<'_, '_>) + Send + Sync + Clone,
+    visit: impl for<'w, 's> Fn(D::Item<'w, 's>) + Send + Sync,
 ) where
     D: IterQueryData,
+    for<'w, 's> D::Item<'w, 's>: Send,
     F: QueryFilter,
 {
-    if parallel && ComputeTaskPool::try_get().is_some() {
-        // A cloth is much work: batches of one, so that no thread waits for another's batch.
-        query.par_iter_mut().batching_strategy(BatchingStrategy::fixed(1)).for_each(visit);
-    } else {
-        query.iter_mut().for_each(visit);
+    let visit = &visit;
+    match ComputeTaskPool::try_get().filter(|_| parallel) {
+        Some(pool) => {
+            pool.scope(|scope| query.iter_mut().for_each(|item| scope.spawn(async move { visit(item) })));
+        }
+        None => query.iter_mut().for_each(visit),
     }
 }
 
 fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Obstacles, winds: &Winds) {
     let Some(material) = state.material else { return };
+    state.work.recovered = false;
+    // Paused: nothing is new to draw, and what pushes the cloth is kept until time goes on.
+    if time.delta_secs() <= 0.0 {
+        return;
+    }
     let Cloth { solver, substeps, max_substeps, gravity_scale, .. } = state.settings;
     let Work { anchors, obstacles: near, winds: felt, scratch, recovered } = &mut state.work;
     obstacles.around(state.origin, state.settings.collision_mask, near);

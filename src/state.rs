@@ -117,6 +117,8 @@ impl ClothState {
 
     /// World normals of all particles, unit vectors, on the side that the mesh's triangles face. Computed anew.
     pub fn normals(&self) -> Vec<Vec3> {
+        // A mirrored mesh shows its back where its triangles, in the world, seem to face.
+        let side = 1.0_f32.copysign(self.pose.matrix3.determinant());
         let mut normals = vec![Vec3A::ZERO; self.particles.len()];
         for triangle in &self.topology.triangles {
             let [a, b, c] = triangle.map(|i| self.particles.position[i as usize]);
@@ -125,7 +127,7 @@ impl ClothState {
                 normals[particle as usize] += doubled_area;
             }
         }
-        normals.into_iter().map(|normal| normal.normalize_or_zero().into()).collect()
+        normals.into_iter().map(|normal| (normal.normalize_or_zero() * side).into()).collect()
     }
 
     /// Particles of each triangle.
@@ -180,6 +182,9 @@ impl ClothState {
     }
 
     fn spread(&mut self, centre: Vec3, radius: f32, apply: impl Fn(&mut Self, usize, f32)) {
+        if radius.is_nan() || radius <= 0.0 {
+            return;
+        }
         let centre = Vec3A::from(centre - self.origin);
         let weight = |state: &Self, particle: usize| {
             let closeness = 1.0 - state.particles.position[particle].distance(centre) / radius;

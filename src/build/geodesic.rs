@@ -27,7 +27,7 @@ use crate::solver::{Tether, Topology};
 const MOST_TETHERS: usize = 4;
 
 /// A pin adds nothing where a nearer one is closer to it than this share of its own distance.
-const TELLING_APART: f32 = 0.5;
+const TELLING_APART: f32 = 0.8;
 
 /// Tethers of every particle to the nearest few of `pins` (indices of particles), sorted by pin.
 ///

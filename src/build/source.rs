@@ -1,7 +1,7 @@
 //! Reads what cloth needs out of a `Mesh`, or says why that can't be done.
 
 use bevy::{
-    mesh::{Indices, MeshAccessError, PrimitiveTopology, VertexAttributeValues},
+    mesh::{Indices, MeshAccessError, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues},
     prelude::*,
 };
 
@@ -27,12 +27,12 @@ impl SourceMesh {
     pub fn read(mesh: &Mesh) -> Result<Self, ClothError> {
         let positions = read_positions(mesh)?;
         let triangles = read_triangles(mesh, positions.len())?;
-        let normals = match mesh.try_attribute(Mesh::ATTRIBUTE_NORMAL) {
-            Ok(VertexAttributeValues::Float32x3(values)) => Some(values.iter().copied().map(Vec3::from).collect()),
+        let normals = match per_vertex(mesh, Mesh::ATTRIBUTE_NORMAL) {
+            Some(VertexAttributeValues::Float32x3(values)) => Some(values.iter().copied().map(Vec3::from).collect()),
             _ => None,
         };
-        let tangents = match mesh.try_attribute(Mesh::ATTRIBUTE_TANGENT) {
-            Ok(VertexAttributeValues::Float32x4(values)) => Some(values.iter().copied().map(Vec4::from).collect()),
+        let tangents = match per_vertex(mesh, Mesh::ATTRIBUTE_TANGENT) {
+            Some(VertexAttributeValues::Float32x4(values)) => Some(values.iter().copied().map(Vec4::from).collect()),
             _ => None,
         };
         Ok(Self { positions, triangles, normals, uvs: read_uvs(mesh), tangents })
@@ -41,10 +41,16 @@ impl SourceMesh {
 
 /// The first UV of each vertex, where the mesh has them.
 pub(crate) fn read_uvs(mesh: &Mesh) -> Option<Vec<Vec2>> {
-    match mesh.try_attribute(Mesh::ATTRIBUTE_UV_0) {
-        Ok(VertexAttributeValues::Float32x2(values)) => Some(values.iter().copied().map(Vec2::from).collect()),
+    match per_vertex(mesh, Mesh::ATTRIBUTE_UV_0) {
+        Some(VertexAttributeValues::Float32x2(values)) => Some(values.iter().copied().map(Vec2::from).collect()),
         _ => None,
     }
+}
+
+/// The values of an attribute that has one for each position: Bevy doesn't check that.
+fn per_vertex(mesh: &Mesh, attribute: MeshVertexAttribute) -> Option<&VertexAttributeValues> {
+    let count = mesh.try_attribute(Mesh::ATTRIBUTE_POSITION).ok()?.len();
+    mesh.try_attribute(attribute).ok().filter(|values| values.len() == count)
 }
 
 fn read_positions(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Weak};
 
 use bevy::{
-    asset::LoadState,
+    asset::{LoadState, RenderAssetUsages},
     ecs::query::QueryData,
     math::{Affine3A, Vec3A},
     platform::collections::{HashMap, HashSet},
@@ -118,10 +118,11 @@ impl CandidateItem<'_, '_> {
             || self.pins.is_changed()
             || self.transform.is_changed()
             || self.mesh.is_changed();
+        let reset = self.state.requests.reset;
         match &*self.status {
-            _ if self.state.requests.reset => Some(Cause::Again(ResetCause::Requested)),
             ClothStatus::Waiting => Some(Cause::First),
-            ClothStatus::Failed(_) => (touched || mesh_changed).then_some(Cause::First),
+            ClothStatus::Failed(_) => (touched || mesh_changed || reset).then_some(Cause::First),
+            ClothStatus::Ready if reset => Some(Cause::Again(ResetCause::Requested)),
             ClothStatus::Ready => mesh_changed.then_some(Cause::Again(ResetCause::Rebuilt)),
         }
     }
@@ -141,6 +142,10 @@ impl CandidateItem<'_, '_> {
             .ok()
             .filter(anchor::is_invertible)
             .ok_or(ClothError::FlatTransform)?;
+        // What is drawn is a copy: it would leave for the render world with the first frame, and couldn't be written.
+        if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
+            return Err(ClothError::NotInMainWorld);
+        }
         let plan = cache.plan(source.id(), mesh, &pose)?;
         let targets = targets_by_particle(&self.pins, mesh, &plan.binding.particle_of_vertex, &plan.topology)?;
         let rest: Vec<Vec3A> = plan.topology.rest.iter().copied().map(Vec3A::from).collect();
@@ -192,12 +197,12 @@ impl CandidateItem<'_, '_> {
 
     fn reject(&mut self, error: ClothError, commands: &mut Commands) {
         self.state.requests.reset = false;
-        let failed = ClothStatus::Failed(error.clone());
-        if *self.status == failed {
+        // By its words: an error that carries a NaN doesn't equal itself.
+        if matches!(&*self.status, ClothStatus::Failed(known) if known.to_string() == error.to_string()) {
             return;
         }
         warn!("cloth {} can't be built: {error}", self.entity);
-        *self.status = failed;
+        *self.status = ClothStatus::Failed(error.clone());
         commands.trigger(ClothFailed { entity: self.entity, error });
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use bevy::{
     asset::AssetMut,
+    ecs::system::NonSendMarker,
     math::{Affine3A, Vec3A, bounding::Aabb3d},
     mesh::{MeshVertexAttribute, VertexAttributeValues},
     prelude::*,
@@ -42,7 +43,11 @@ pub(crate) struct Shape {
 }
 
 /// Computes what every cloth looks like at the moment that is drawn.
-pub(crate) fn shape_cloths(mut cloths: Query<(&ClothState, &mut ClothMesh, &GlobalTransform)>, clock: ClothClock) {
+pub(crate) fn shape_cloths(
+    mut cloths: Query<(&ClothState, &mut ClothMesh, &GlobalTransform)>,
+    clock: ClothClock,
+    _main_thread: NonSendMarker,
+) {
     let now = clock.overstep();
     crate::simulate::for_each(&mut cloths, clock.parallel(), |(state, mut mesh, transform)| {
         let ClothMesh { binding, shape, .. } = &mut *mesh;
@@ -113,7 +118,9 @@ impl Shape {
         if let Some(VertexAttributeValues::Float32x3(values)) = values(mesh, Mesh::ATTRIBUTE_POSITION) {
             values.clone_from(&self.positions);
         }
-        if let Some(VertexAttributeValues::Float32x3(values)) = values(mesh, Mesh::ATTRIBUTE_NORMAL) {
+        if let Some(VertexAttributeValues::Float32x3(values)) = values(mesh, Mesh::ATTRIBUTE_NORMAL)
+            && !self.normals.is_empty()
+        {
             values.clone_from(&self.normals);
         }
         if let Some(VertexAttributeValues::Float32x4(values)) = values(mesh, Mesh::ATTRIBUTE_TANGENT)

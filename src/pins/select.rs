@@ -68,7 +68,8 @@ pub(crate) fn targets_by_particle(
     let selection = Selection { mesh, particle_of_vertex, topology };
     for group in &pins.groups {
         for vertex in selection.vertices(&group.select)? {
-            let particle = particle_of_vertex[vertex as usize];
+            // A mesh that has just changed may have more vertices than the cloth that was made from it.
+            let particle = particle_of_vertex.get(vertex as usize).copied().unwrap_or(NO_PARTICLE);
             if particle != NO_PARTICLE {
                 targets[particle as usize] = group.to;
             }

@@ -14,7 +14,7 @@ use super::{
 pub const MAX_TIME_STEP: f32 = 0.1;
 
 /// How often the forces of the air are renewed within a step, Hz. They change more slowly than the springs.
-const AIR_RATE: f32 = 240.0;
+const AIR_RATE: f32 = 160.0;
 
 /// Advances one cloth by `ctx.dt`.
 ///

@@ -125,18 +125,20 @@ pub fn apply_air(particles: &Particles, topology: &Topology, ctx: &StepContext, 
     let triangles = topology.triangles.iter().zip(&topology.triangle_areas).zip(air_velocity.iter());
     for ((&[i, j, k], &rest_area), &air) in triangles {
         let (i, j, k) = (i as usize, j as usize, k as usize);
-        let doubled = (position[j] - position[i]).cross(position[k] - position[i]);
-        let doubled_area = doubled.length();
+        // Twice the area along the normal.
+        let normal = (position[j] - position[i]).cross(position[k] - position[i]);
         let u = air - (velocity[i] + velocity[j] + velocity[k]) / 3.0;
-        let speed = u.length();
-        if doubled_area * speed < 1e-12 {
+        let (area, speed) = (normal.length(), u.length());
+        if area * speed < 1e-12 {
             continue;
         }
-        let n = doubled / doubled_area;
-        let across = n.dot(u);
+        let flow = normal.dot(u);
+        let per_area_speed = 1.0 / (area * speed);
         // |u|² c (drag û + lift (n - c û)) = |u·n| (drag u + lift (|u| n - (u·n) û)), with n towards the lee.
-        let blown = u * drag + (n * speed.copysign(across) - u * (across.abs() / speed)) * lift;
-        let rate = (half_density * across.abs() * doubled_area / 2.0).min(most_per_rest_area * rest_area);
+        let along = drag - lift * flow.abs() * per_area_speed;
+        let across = lift * speed * speed * per_area_speed;
+        let blown = u * along + normal * across.copysign(flow);
+        let rate = (0.5 * half_density * flow.abs()).min(most_per_rest_area * rest_area);
         let share = blown * (rate / 3.0);
         steady_force[i] += share;
         steady_force[j] += share;

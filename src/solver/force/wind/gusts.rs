@@ -79,11 +79,13 @@ impl Field {
         let place = ((point - self.corner) * self.scale).clamp(Vec3A::ZERO, last.as_vec3a());
         let low = place.as_uvec3().min(last.saturating_sub(UVec3::ONE));
         let t = place - low.as_vec3a();
-        let high = (low + 1).min(last);
-        let value = |x: u32, y: u32, z: u32| self.velocity[(x + self.samples.x * (y + self.samples.y * z)) as usize];
-        let row = |y: u32, z: u32| value(low.x, y, z).lerp(value(high.x, y, z), t.x);
-        let layer = |z: u32| row(low.y, z).lerp(row(high.y, z), t.y);
-        layer(low.z).lerp(layer(high.z), t.z)
+        // From a sample to the next along each axis; none along an axis of one sample.
+        let steps = UVec3::new(1, self.samples.x, self.samples.x * self.samples.y);
+        let first = low.dot(steps) as usize;
+        let [x, y, z] = (steps * last.min(UVec3::ONE)).to_array().map(|step| step as usize);
+        let row = |i: usize| self.velocity[i].lerp(self.velocity[i + x], t.x);
+        let layer = |i: usize| row(i).lerp(row(i + y), t.y);
+        layer(first).lerp(layer(first + z), t.z)
     }
 }
 
