@@ -7,8 +7,10 @@ use super::Topology;
 /// Working memory of [`step`](super::step()). One can serve any number of cloths in turn.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    /// Velocity of the air at each triangle, m/s.
+    /// Velocity of the air at each particle, m/s.
     pub(super) air_velocity: Vec<Vec3A>,
+    /// A third of the air's velocity as each particle feels it: less its own, m/s.
+    pub(super) relative_air: Vec<Vec3A>,
     /// External force and force of the air on each particle, N: constant over some substeps.
     pub(super) steady_force: Vec<Vec3A>,
     /// The steady force and the force of the springs on each particle, N.
@@ -23,7 +25,8 @@ impl Scratch {
     /// Makes room for a cloth; allocates only when it is larger than all before.
     pub(super) fn fit(&mut self, topology: &Topology) {
         let particles = topology.particle_count();
-        self.air_velocity.resize(topology.triangles.len(), Vec3A::ZERO);
+        self.air_velocity.resize(particles, Vec3A::ZERO);
+        self.relative_air.resize(particles, Vec3A::ZERO);
         self.steady_force.resize(particles, Vec3A::ZERO);
         self.force.resize(particles, Vec3A::ZERO);
         self.spring_shares.resize(topology.springs.len(), [0.0; 2]);

@@ -40,7 +40,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     let mut contacts = 0;
 
     spring::weigh(particles, topology, &ctx.material, h, &mut scratch.spring_shares);
-    wind::sample_air(particles, topology, ctx, scratch);
+    wind::sample_air(particles, ctx, scratch);
     for substep in 0..substeps {
         let start = substep as f32 / substeps as f32;
         let end = (substep + 1) as f32 / substeps as f32;

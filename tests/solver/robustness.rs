@@ -73,5 +73,5 @@ fn a_cloth_crushed_to_a_point_opens_again() {
     let structural = bed.topology.springs_of(SpringKind::Structural);
     let strains: Vec<f32> = structural.map(|spring| strain(&bed.particles.position, spring).max(0.0)).collect();
     let mean = strains.iter().sum::<f32>() / strains.len() as f32;
-    assert!(mean < 0.05, "a mean stretch of {mean}");
+    assert!(mean < 0.1, "a mean stretch of {mean}");
 }

@@ -90,19 +90,18 @@ pub struct WindSource {
     pub origin: Vec3A,
 }
 
-/// Writes the velocity of the air at each triangle into the scratch, once a step.
-pub fn sample_air(particles: &Particles, topology: &Topology, ctx: &StepContext, scratch: &mut Scratch) {
+/// Writes the velocity of the air at each particle into the scratch, once a step.
+pub fn sample_air(particles: &Particles, ctx: &StepContext, scratch: &mut Scratch) {
     scratch.air_velocity.fill(Vec3A::ZERO);
     if !feels_air(ctx) {
         return;
     }
     for wind in ctx.winds {
         let field = gusts::Field::sample(wind, &particles.position, ctx.time);
-        for (air, triangle) in scratch.air_velocity.iter_mut().zip(&topology.triangles) {
-            let centre = triangle.iter().map(|&i| particles.position[i as usize]).sum::<Vec3A>() / 3.0;
-            let weight = wind.region.weight(centre);
+        for (air, &place) in scratch.air_velocity.iter_mut().zip(&particles.position) {
+            let weight = wind.region.weight(place);
             if weight > 0.0 {
-                *air += field.at(centre) * weight;
+                *air += field.at(place) * weight;
             }
         }
     }
@@ -113,21 +112,23 @@ pub fn sample_air(particles: &Particles, topology: &Topology, ctx: &StepContext,
 /// The force stands for `interval` seconds. It is limited so that it can't turn a triangle's velocity against the
 /// air around within that time, which is what makes light cloth in a storm stable.
 pub fn apply_air(particles: &Particles, topology: &Topology, ctx: &StepContext, interval: f32, scratch: &mut Scratch) {
-    let Scratch { steady_force, air_velocity, .. } = scratch;
+    let Scratch { steady_force, air_velocity, relative_air, .. } = scratch;
     steady_force.copy_from_slice(&particles.force);
     if !feels_air(ctx) {
         return;
     }
-    let Particles { position, velocity, .. } = particles;
+    for ((relative, &air), &velocity) in relative_air.iter_mut().zip(&*air_velocity).zip(&particles.velocity) {
+        *relative = (air - velocity) / 3.0;
+    }
+    let position = &particles.position;
     let (drag, lift) = (ctx.material.drag, ctx.material.lift);
     let half_density = 0.5 * ctx.fluid_density;
     let most_per_rest_area = ctx.material.density / (interval * (drag + lift));
-    let triangles = topology.triangles.iter().zip(&topology.triangle_areas).zip(air_velocity.iter());
-    for ((&[i, j, k], &rest_area), &air) in triangles {
+    for (&[i, j, k], &rest_area) in topology.triangles.iter().zip(&topology.triangle_areas) {
         let (i, j, k) = (i as usize, j as usize, k as usize);
         // Twice the area along the normal.
         let normal = (position[j] - position[i]).cross(position[k] - position[i]);
-        let u = air - (velocity[i] + velocity[j] + velocity[k]) / 3.0;
+        let u = relative_air[i] + relative_air[j] + relative_air[k];
         let (area, speed) = (normal.length(), u.length());
         if area * speed < 1e-12 {
             continue;
