@@ -7,7 +7,13 @@
 
 mod common;
 
-use bevy::{math::primitives::InfinitePlane3d, prelude::*, world_serialization::WorldInstanceReady};
+use core::f32::consts::FRAC_PI_2;
+
+use bevy::{
+    math::{ops, primitives::InfinitePlane3d},
+    prelude::*,
+    world_serialization::WorldInstanceReady,
+};
 use bevy_drape::prelude::*;
 
 fn main() -> AppExit {
@@ -17,12 +23,13 @@ fn main() -> AppExit {
     )
     .add_plugins(ClothPlugin::default())
     .add_systems(Startup, (common::spawn_scenery, setup))
+    .add_systems(FixedUpdate, slide_rings)
     .add_systems(Update, (reset, calm, pause))
     .run()
 }
 
 fn setup(mut commands: Commands, mut studio: common::Studio, server: Res<AssetServer>) {
-    common::spawn_camera(&mut commands, Vec3::new(0.5, 1.6, 5.2), Vec3::new(0.1, 1.1, 0.0));
+    common::spawn_camera(&mut commands, Vec3::new(0.5, 1.5, 4.7), Vec3::new(0.15, 1.1, -0.2));
     commands.spawn(ClothCollider::from(InfinitePlane3d::default()));
 
     spawn_curtain(&mut commands, &mut studio);
@@ -42,7 +49,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio, server: Res<AssetSe
     );
     spawn_flag(&mut commands, &mut studio, &server);
     // Each wind blows in a box of its own and leaves the two cloths in front alone.
-    spawn_wind(&mut commands, Vec3::new(0.9, 0.0, 2.2), Vec3::new(-1.3, 1.3, -0.9));
+    spawn_wind(&mut commands, Vec3::new(0.4, 0.0, 1.6), Vec3::new(-1.3, 1.3, -0.9));
     spawn_wind(&mut commands, Vec3::new(6.0, 0.0, 1.2), Vec3::new(2.1, 2.0, -0.9));
 }
 
@@ -54,17 +61,40 @@ fn spawn_wind(commands: &mut Commands, velocity: Vec3, place: Vec3) {
     ));
 }
 
-/// A curtain that two corners hold on a rod.
+/// A ring that slides on the curtain's rod.
+#[derive(Component)]
+struct Ring {
+    middle: Vec3,
+    side: f32,
+}
+
+/// A curtain that two corners hold on a rod, by rings that slide to and fro.
 fn spawn_curtain(commands: &mut Commands, studio: &mut common::Studio) {
-    let top = Vec3::new(-1.35, 2.3, -0.9);
-    studio.spawn_rod(commands, top - Vec3::X * 0.8, top + Vec3::X * 0.8, 0.02);
+    let grid = ClothGrid::new(1.5, 1.8, 40, 48);
+    let middle = Vec3::new(-1.3, 2.2, -0.9);
+    studio.spawn_rod(commands, middle - Vec3::X * 0.8, middle + Vec3::X * 0.8, 0.018);
+    let mut ring = |side: f32| {
+        let torus = studio.solid(Torus::new(0.02, 0.035), Color::srgb(0.75, 0.62, 0.35));
+        let place = Transform::from_translation(middle + Vec3::X * 0.75 * side);
+        let upright = place.with_rotation(Quat::from_rotation_z(FRAC_PI_2));
+        commands.spawn((torus, Ring { middle, side }, upright)).id()
+    };
+    let left = Pins::indices([grid.vertex(0, 0)]).to_entity(ring(-1.0));
+    let right = Pins::indices([grid.vertex(39, 0)]).to_entity(ring(1.0));
     commands.spawn((
-        studio.cloth(ClothGrid::new(1.5, 1.9, 40, 50), Color::srgb(0.72, 0.16, 0.14)),
+        studio.cloth(grid, Color::srgb(0.72, 0.16, 0.14)),
         Cloth { substeps: 12, ..default() },
         Fabric { density: 0.15, bend_stiffness: 5.0, ..default() },
-        Pins::edge_corners(ClothEdge::Top),
-        Transform::from_translation(top - Vec3::Y * 0.95),
+        left.and(right),
+        Transform::from_translation(middle - Vec3::Y * 0.93),
     ));
+}
+
+fn slide_rings(time: Res<Time>, mut rings: Query<(&Ring, &mut Transform)>) {
+    let reach = 0.58 + 0.17 * ops::cos(0.8 * time.elapsed_secs());
+    for (ring, mut transform) in &mut rings {
+        transform.translation = ring.middle + Vec3::X * ring.side * reach;
+    }
 }
 
 /// A cloth that falls on an obstacle.
@@ -88,11 +118,11 @@ where
 /// A pole, and a model of which one mesh is to be cloth.
 fn spawn_flag(commands: &mut Commands, studio: &mut common::Studio, server: &AssetServer) {
     let foot = Vec3::new(1.25, 0.0, -0.9);
-    studio.spawn_rod(commands, foot, foot + Vec3::Y * 2.65, 0.025);
+    studio.spawn_rod(commands, foot, foot + Vec3::Y * 2.5, 0.025);
     commands
         .spawn((
             WorldAssetRoot(server.load(GltfAssetLabel::Scene(0).from_asset("flag.glb"))),
-            Transform::from_translation(foot + Vec3::new(0.03, 1.6, 0.0)),
+            Transform::from_translation(foot + Vec3::new(0.03, 2.45, 0.0)),
         ))
         .observe(make_cloth_of_model);
 }
