@@ -25,10 +25,10 @@ struct Expectation {
 
 #[rustfmt::skip]
 const EXPECTATIONS: [Expectation; 4] = [
-    Expectation { name: "curtain", region: [0.24, 0.26, 0.40, 0.60], hue: [345.0, 15.0], saturation: [0.5, 1.0], share: 0.20 },
-    Expectation { name: "cloth on the ball", region: [0.32, 0.58, 0.47, 0.76], hue: [195.0, 225.0], saturation: [0.4, 1.0], share: 0.25 },
-    Expectation { name: "tablecloth", region: [0.53, 0.59, 0.65, 0.74], hue: [35.0, 50.0], saturation: [0.4, 1.0], share: 0.30 },
-    Expectation { name: "flag", region: [0.62, 0.38, 0.79, 0.59], hue: [180.0, 205.0], saturation: [0.4, 1.0], share: 0.15 },
+    Expectation { name: "curtain", region: [0.25, 0.30, 0.40, 0.60], hue: [345.0, 15.0], saturation: [0.5, 1.0], share: 0.60 },
+    Expectation { name: "cloth on the ball", region: [0.26, 0.66, 0.40, 0.80], hue: [195.0, 225.0], saturation: [0.4, 1.0], share: 0.40 },
+    Expectation { name: "tablecloth", region: [0.53, 0.66, 0.65, 0.80], hue: [35.0, 50.0], saturation: [0.4, 1.0], share: 0.40 },
+    Expectation { name: "flag", region: [0.65, 0.20, 0.83, 0.30], hue: [180.0, 205.0], saturation: [0.4, 1.0], share: 0.35 },
 ];
 
 #[test]
