@@ -93,6 +93,7 @@ impl Cloth {
 
 /// Whether an entity's cloth runs, and if not, why not.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[component(clone_behavior = Ignore)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub enum ClothStatus {
     /// The mesh isn't there yet; the cloth is built as soon as it is.

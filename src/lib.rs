@@ -31,7 +31,10 @@
 //!
 //! All quantities are in SI units: m, kg, s, N. The solver is in [`solver`] and can be used without Bevy's ECS.
 
-#![warn(missing_docs)]
+/// Compiles the code of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 mod cloth;
 mod error;

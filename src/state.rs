@@ -19,6 +19,7 @@ use crate::{
 /// A mesh's vertices that share a position are one particle: [`particle_of_vertex`](Self::particle_of_vertex) maps
 /// one to the other.
 #[derive(Component, Clone, Debug, Default, Reflect)]
+#[component(clone_behavior = Ignore)]
 #[reflect(opaque)]
 #[reflect(Component, Default, Debug, Clone)]
 pub struct ClothState {

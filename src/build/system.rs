@@ -60,29 +60,46 @@ pub(crate) fn build_cloths(
     mut cache: ResMut<TopologyCache>,
     poses: Poses,
 ) {
-    let changed: HashSet<AssetId<Mesh>> = mesh_events
-        .read()
-        .filter_map(|event| match event {
-            AssetEvent::Modified { id } => Some(*id),
-            _ => None,
-        })
-        .collect();
-    cache.forget(&changed);
+    let news = MeshNews::read(&mut mesh_events);
+    cache.forget(&news.changed);
     for mut candidate in &mut candidates {
         let source = candidate.source();
-        let Some(cause) = candidate.cause(&source, &changed) else { continue };
+        let Some(cause) = candidate.cause(&source, &news) else { continue };
         let built = match meshes.get(&source) {
             Some(mesh) => candidate.build(mesh, &source, &mut cache, &poses),
             None => match assets.as_ref().map(|assets| assets.load_state(&source)) {
                 Some(LoadState::Failed(error)) => Err(ClothError::NotLoaded { reason: error.to_string() }),
-                // Not there yet: try again in the next frame.
-                _ => continue,
+                _ => {
+                    candidate.wait();
+                    continue;
+                }
             },
         };
         match built {
             Ok(built) => candidate.accept(built, cause, source, &mut meshes, &mut commands),
             Err(error) => candidate.reject(error, &mut commands),
         }
+    }
+}
+
+/// What has become of mesh assets since the last frame.
+#[derive(Debug, Default)]
+struct MeshNews {
+    added: HashSet<AssetId<Mesh>>,
+    changed: HashSet<AssetId<Mesh>>,
+}
+
+impl MeshNews {
+    fn read(events: &mut MessageReader<AssetEvent<Mesh>>) -> Self {
+        let mut news = Self::default();
+        for event in events.read() {
+            match event {
+                AssetEvent::Added { id } => drop(news.added.insert(*id)),
+                AssetEvent::Modified { id } => drop(news.changed.insert(*id)),
+                _ => {}
+            }
+        }
+        news
     }
 }
 
@@ -111,8 +128,9 @@ impl CandidateItem<'_, '_> {
     }
 
     /// Why the cloth has to be built now, if it has to.
-    fn cause(&self, source: &Handle<Mesh>, changed: &HashSet<AssetId<Mesh>>) -> Option<Cause> {
-        let mesh_changed = changed.contains(&source.id()) || self.own_mesh.is_some_and(|own| own.source != *source);
+    fn cause(&self, source: &Handle<Mesh>, news: &MeshNews) -> Option<Cause> {
+        let changed = news.changed.contains(&source.id());
+        let added = news.added.contains(&source.id());
         let touched = self.cloth.is_changed()
             || self.fabric.is_changed()
             || self.pins.is_changed()
@@ -121,9 +139,22 @@ impl CandidateItem<'_, '_> {
         let reset = self.state.requests.reset;
         match &*self.status {
             ClothStatus::Waiting => Some(Cause::First),
-            ClothStatus::Failed(_) => (touched || mesh_changed || reset).then_some(Cause::First),
+            ClothStatus::Failed(_) => (touched || changed || added || reset).then_some(Cause::First),
             ClothStatus::Ready if reset => Some(Cause::Again(ResetCause::Requested)),
-            ClothStatus::Ready => mesh_changed.then_some(Cause::Again(ResetCause::Rebuilt)),
+            ClothStatus::Ready => match self.own_mesh {
+                // Only its status has come from elsewhere, as from a scene.
+                None => Some(Cause::First),
+                // `Mesh3d` was replaced, be it by the mesh that the cloth was made from.
+                Some(own) if own.drawn != self.mesh.0 => Some(Cause::Again(ResetCause::Rebuilt)),
+                Some(_) => changed.then_some(Cause::Again(ResetCause::Rebuilt)),
+            },
+        }
+    }
+
+    /// The mesh isn't there yet: it is looked for again in the next frame.
+    fn wait(&mut self) {
+        if matches!(*self.status, ClothStatus::Failed(_)) {
+            *self.status = ClothStatus::Waiting;
         }
     }
 
@@ -177,8 +208,10 @@ impl CandidateItem<'_, '_> {
     ) {
         let entity = self.entity;
         let drawn = match self.own_mesh {
-            // A rebuilt cloth keeps its own mesh, with new contents.
-            Some(own) if meshes.insert(own.drawn.id(), built.mesh.clone()).is_ok() => own.drawn.clone(),
+            // A rebuilt cloth keeps its own mesh, with new contents; that of a copied entity is another's.
+            Some(own) if cause != Cause::First && meshes.insert(own.drawn.id(), built.mesh.clone()).is_ok() => {
+                own.drawn.clone()
+            }
             _ => meshes.add(built.mesh),
         };
         *self.state = built.state;

@@ -51,7 +51,9 @@ pub(crate) fn shape_cloths(
     let now = clock.overstep();
     crate::simulate::for_each(&mut cloths, clock.parallel(), |(state, mut mesh, transform)| {
         let ClothMesh { binding, shape, .. } = &mut *mesh;
-        shape.update(state, binding, transform.affine(), now);
+        // Until the next step does a teleport, the cloth is drawn as if it had been done.
+        let pose = if state.requests.teleport { state.pose } else { transform.affine() };
+        shape.update(state, binding, pose, now);
     });
 }
 
