@@ -1,0 +1,158 @@
+//! A headless app whose every update runs exactly one step, and ways to look into it.
+
+use std::time::Duration;
+
+use bevy::{
+    asset::RenderAssetUsages,
+    ecs::component::Mutable,
+    mesh::{Indices, MeshPlugin, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues},
+    prelude::*,
+    time::TimeUpdateStrategy,
+};
+use bevy_drape::prelude::*;
+
+/// Duration of a step of [`headless`] apps, s.
+pub const STEP: f32 = 1.0 / 60.0;
+
+/// Everything that cloths have announced, in its order.
+#[derive(Resource, Default, Debug, PartialEq)]
+pub struct Heard {
+    pub ready: Vec<Entity>,
+    pub failed: Vec<(Entity, ClothError)>,
+    pub reset: Vec<(Entity, ResetCause)>,
+}
+
+/// An app with cloth at 60 Hz: each update runs one step and, with no time left over, draws where that began.
+pub fn headless() -> App {
+    headless_with(ClothPlugin::default())
+}
+
+/// The same with a plugin that is set up otherwise.
+pub fn headless_with(plugin: ClothPlugin) -> App {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin, plugin))
+        .init_resource::<Heard>()
+        .add_observer(|event: On<ClothReady>, mut heard: ResMut<Heard>| heard.ready.push(event.entity))
+        .add_observer(|event: On<ClothFailed>, mut heard: ResMut<Heard>| {
+            heard.failed.push((event.entity, event.error.clone()));
+        })
+        .add_observer(|event: On<ClothReset>, mut heard: ResMut<Heard>| heard.reset.push((event.entity, event.cause)));
+    let step = Time::<Fixed>::from_hz(60.0);
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(step.timestep())).insert_resource(step);
+    app.finish();
+    app.cleanup();
+    // Bevy's clock starts with the first update, which therefore runs no step.
+    app.update();
+    app
+}
+
+/// Makes each update last `update` s and each step `step` s.
+pub fn set_rates(app: &mut App, update: f64, step: f64) {
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(update)));
+    app.world_mut().resource_mut::<Time<Fixed>>().set_timestep(Duration::from_secs_f64(step));
+}
+
+/// Updates the app `frames` times.
+pub fn run(app: &mut App, frames: usize) {
+    for _ in 0..frames {
+        app.update();
+    }
+}
+
+/// Spawns a mesh with a [`Cloth`] and, over it, `more` components. It is ready after one update.
+pub fn spawn_cloth(app: &mut App, mesh: impl Into<Mesh>, more: impl Bundle) -> Entity {
+    let mesh = add_mesh(app, mesh);
+    app.world_mut().spawn((Mesh3d(mesh), Cloth::default())).insert(more).id()
+}
+
+pub fn add_mesh(app: &mut App, mesh: impl Into<Mesh>) -> Handle<Mesh> {
+    app.world_mut().resource_mut::<Assets<Mesh>>().add(mesh)
+}
+
+/// Applies commands to an entity at once.
+pub fn command<F>(app: &mut App, entity: Entity, ask: F)
+where
+    F: for<'a, 'w> FnOnce(&'a mut EntityCommands<'w>) -> &'a mut EntityCommands<'w>,
+{
+    ask(&mut app.world_mut().commands().entity(entity));
+    app.world_mut().flush();
+}
+
+/// A fabric that neither the air nor its own damping slows down.
+pub fn undamped() -> Fabric {
+    Fabric { damping: 0.0, drag: 0.0, lift: 0.0, ..default() }
+}
+
+pub fn get<C: Component>(app: &App, entity: Entity) -> &C {
+    app.world().get::<C>(entity).unwrap_or_else(|| panic!("{entity} has no {}", core::any::type_name::<C>()))
+}
+
+pub fn get_mut<C: Component<Mutability = Mutable>>(app: &mut App, entity: Entity) -> Mut<'_, C> {
+    app.world_mut().get_mut::<C>(entity).unwrap_or_else(|| panic!("{entity} has no {}", core::any::type_name::<C>()))
+}
+
+pub fn state(app: &App, entity: Entity) -> &ClothState {
+    get(app, entity)
+}
+
+pub fn positions(app: &App, entity: Entity) -> Vec<Vec3> {
+    state(app, entity).positions().collect()
+}
+
+/// World position of one of the mesh's vertices.
+pub fn place(app: &App, entity: Entity, vertex: u32) -> Vec3 {
+    let state = state(app, entity);
+    let particle = state.particle_of_vertex(vertex as usize).expect("the vertex is in a triangle");
+    state.position(particle).expect("the cloth is ready")
+}
+
+/// The mesh's vertices that are pinned.
+pub fn pinned(app: &App, entity: Entity) -> Vec<usize> {
+    let state = state(app, entity);
+    let vertices = drawn(app, entity).count_vertices();
+    (0..vertices).filter(|&vertex| state.particle_of_vertex(vertex).is_some_and(|p| state.is_pinned(p))).collect()
+}
+
+/// The mesh that is drawn for an entity.
+pub fn drawn(app: &App, entity: Entity) -> &Mesh {
+    app.world().resource::<Assets<Mesh>>().get(&get::<Mesh3d>(app, entity).0).expect("the mesh exists")
+}
+
+pub fn vec3s(mesh: &Mesh, attribute: MeshVertexAttribute) -> Vec<Vec3> {
+    match mesh.attribute(attribute) {
+        Some(VertexAttributeValues::Float32x3(values)) => values.iter().copied().map(Vec3::from).collect(),
+        other => panic!("no vectors but {other:?}"),
+    }
+}
+
+pub fn points(mesh: &Mesh) -> Vec<Vec3> {
+    vec3s(mesh, Mesh::ATTRIBUTE_POSITION)
+}
+
+pub fn normals(mesh: &Mesh) -> Vec<Vec3> {
+    vec3s(mesh, Mesh::ATTRIBUTE_NORMAL)
+}
+
+#[track_caller]
+pub fn assert_close(a: Vec3, b: Vec3, tolerance: f32) {
+    assert!(a.distance(b) <= tolerance, "{a} and {b} are {} apart", a.distance(b));
+}
+
+/// A strip of two quads in the XY plane, 2 m long, whose vertices are doubled where they meet:
+///
+/// ```text
+///  0 --- 1 4 --- 6
+///  |     | |     |
+///  2 --- 3 5 --- 7
+/// ```
+pub fn seamed_strip() -> Mesh {
+    let place = [[-1, 1], [0, 1], [-1, 0], [0, 0], [0, 1], [0, 0], [1, 1], [1, 0]];
+    let uv = [[0, 0], [1, 0], [0, 1], [1, 1], [0, 0], [0, 1], [1, 0], [1, 1]];
+    let positions = place.map(|[x, y]| [x as f32, y as f32, 0.0]).to_vec();
+    let uvs = uv.map(|[u, v]| [u as f32, v as f32]).to_vec();
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0, 0.0, 1.0]; 8])
+        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
+        .with_inserted_indices(Indices::U32(vec![0, 2, 1, 1, 2, 3, 4, 5, 6, 6, 5, 7]))
+}

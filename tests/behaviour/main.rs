@@ -1,0 +1,25 @@
+//! What the plugin does in an app, without a window: one module per behaviour.
+
+mod common;
+
+mod any_mesh;
+mod bad_meshes;
+mod bad_surroundings;
+mod bad_values;
+mod collision_mask;
+mod commands;
+mod determinism;
+mod draws;
+mod draws_between_steps;
+mod events;
+mod far_away;
+mod forces;
+mod gravity;
+mod late_mesh;
+mod missing_plugins;
+mod pin_selectors;
+mod pin_targets;
+mod recovery;
+mod reflection;
+mod removal;
+mod schedules;
