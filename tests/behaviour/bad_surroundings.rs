@@ -24,62 +24,6 @@ fn alone() -> Vec<Vec3> {
 }
 
 #[test]
-fn a_transform_of_no_scale_is_refused_until_it_has_one() {
-    for scale in [Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0), Vec3::splat(f32::NAN), Vec3::splat(f32::INFINITY)] {
-        let mut app = headless();
-        let cloth = spawn_cloth(&mut app, GRID, Transform::from_scale(scale));
-        run(&mut app, 3);
-        assert_eq!(*get::<ClothStatus>(&app, cloth), ClothStatus::Failed(ClothError::FlatTransform), "{scale}");
-        get_mut::<Transform>(&mut app, cloth).scale = Vec3::ONE;
-        run(&mut app, 2);
-        assert_eq!(*get::<ClothStatus>(&app, cloth), ClothStatus::Ready, "{scale}");
-    }
-}
-
-#[test]
-fn a_parent_of_no_scale_is_refused_until_it_has_one() {
-    let mut app = headless();
-    let parent = app.world_mut().spawn(Transform::from_scale(Vec3::ZERO)).id();
-    let cloth = spawn_cloth(&mut app, GRID, ChildOf(parent));
-    run(&mut app, 3);
-    assert_eq!(*get::<ClothStatus>(&app, cloth), ClothStatus::Failed(ClothError::FlatTransform));
-    get_mut::<Transform>(&mut app, parent).scale = Vec3::ONE;
-    run(&mut app, 3);
-    assert_eq!(*get::<ClothStatus>(&app, cloth), ClothStatus::Ready);
-}
-
-#[test]
-fn a_transform_that_turns_bad_leaves_cloth_and_drawing_finite() {
-    let bad = [
-        Transform::from_xyz(f32::NAN, 0.0, 0.0),
-        Transform::from_xyz(0.0, f32::INFINITY, 0.0),
-        Transform::from_rotation(Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0)),
-        Transform::from_scale(Vec3::ZERO),
-    ];
-    for transform in bad {
-        let (mut app, cloth, _) = after(|app, cloth| *get_mut::<Transform>(app, cloth) = transform);
-        assert!(points(drawn(&app, cloth)).into_iter().all(Vec3::is_finite), "{transform:?}");
-        *get_mut::<Transform>(&mut app, cloth) = Transform::IDENTITY;
-        run(&mut app, 90);
-        assert_close(place(&app, cloth, 0), Vec3::new(-0.5, 0.0, -0.5), 1e-6);
-        assert!(place(&app, cloth, 22).y < -0.5, "{transform:?}");
-    }
-}
-
-#[test]
-fn a_target_that_turns_bad_leaves_its_pins_where_they_are() {
-    for transform in [Transform::from_xyz(f32::NAN, 0.0, 0.0), Transform::from_scale(Vec3::ZERO)] {
-        let (_, _, places) = after(|app, cloth| {
-            let target = app.world_mut().spawn(Transform::default()).id();
-            *get_mut::<Pins>(app, cloth) = Pins::indices([0]).to_entity(target);
-            run(app, 1);
-            *get_mut::<Transform>(app, target) = transform;
-        });
-        assert_close(places[0], Vec3::new(-0.5, 0.0, -0.5), 1e-6);
-    }
-}
-
-#[test]
 fn forces_and_impulses_that_are_not_numbers_are_ignored() {
     let (_, _, places) = after(|app, cloth| {
         let mut state = get_mut::<ClothState>(app, cloth);

@@ -4,8 +4,11 @@ mod common;
 
 mod any_mesh;
 mod bad_meshes;
+mod bad_pins;
 mod bad_surroundings;
+mod bad_transforms;
 mod bad_values;
+mod changed_mesh;
 mod collision_mask;
 mod commands;
 mod determinism;
