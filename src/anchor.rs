@@ -8,7 +8,7 @@ use bevy::{
 use crate::{
     build,
     cloth::ClothStatus,
-    draw::mesh::ClothMesh,
+    draw::{carrier::Carrier, mesh::ClothMesh},
     pins::{PinTarget, Pins, targets_by_particle},
     solver::Anchor,
     state::ClothState,
@@ -99,11 +99,13 @@ pub(crate) fn follow_targets(mut cloths: Query<(Entity, &mut ClothState, &ClothS
             let pose = pose.affine();
             if core::mem::take(&mut state.requests.teleport) {
                 teleport(state, pose);
+                state.carrier = None;
             }
             state.pose = pose;
         }
         stay_near_origin(state);
         plan_anchors(state, entity, &poses);
+        state.carrier = carrier(state, entity, &poses);
     }
 }
 
@@ -130,14 +132,27 @@ fn plan_anchors(state: &mut ClothState, cloth: Entity, poses: &Poses) {
     }
 }
 
+/// The entity that all pins follow, if they all follow one, and its way from the latest step to now.
+fn carrier(state: &ClothState, cloth: Entity, poses: &Poses) -> Option<Carrier> {
+    let target = state.pins.first()?.target;
+    let entity = target_entity(target, cloth).filter(|_| state.pins.iter().all(|pin| pin.target == target))?;
+    let end = target_pose(target, cloth, poses)?;
+    let start = state.carrier.filter(|carrier| carrier.entity == entity).map_or(end, |carrier| carrier.end);
+    Some(Carrier { entity, start, end })
+}
+
+/// The entity that a target's pins follow.
+fn target_entity(target: PinTarget, cloth: Entity) -> Option<Entity> {
+    match target {
+        PinTarget::Cloth => Some(cloth),
+        PinTarget::Entity(entity) => entity,
+        PinTarget::World | PinTarget::Free => None,
+    }
+}
+
 /// The pose that a target's pins follow. None for the world, an entity that is gone, and a transform that is flat.
 fn target_pose(target: PinTarget, cloth: Entity, poses: &Poses) -> Option<Affine3A> {
-    let entity = match target {
-        PinTarget::Cloth => cloth,
-        PinTarget::Entity(Some(entity)) => entity,
-        PinTarget::Entity(None) | PinTarget::World | PinTarget::Free => return None,
-    };
-    let pose = poses.compute_global_transform(entity).ok()?.affine();
+    let pose = poses.compute_global_transform(target_entity(target, cloth)?).ok()?.affine();
     is_invertible(&pose).then_some(pose)
 }
 

@@ -73,6 +73,9 @@ impl Default for Cloth {
     }
 }
 
+/// A step of more substeps than this would look like a program that hangs.
+const MOST_SUBSTEPS: u32 = 10_000;
+
 impl Cloth {
     /// Checks the ranges of all settings.
     ///
@@ -80,9 +83,9 @@ impl Cloth {
     ///
     /// [`ClothError::InvalidParameter`] with the first field that is out of its range.
     pub fn validate(&self) -> Result<(), ClothError> {
-        let at_least_one = |name, value: u32| check(name, value as f32, value >= 1, "1 or greater");
-        at_least_one("Cloth::substeps", self.substeps)?;
-        at_least_one("Cloth::max_substeps", self.max_substeps)?;
+        let count = |name, value: u32| check(name, value as f32, (1..=MOST_SUBSTEPS).contains(&value), "1 to 10000");
+        count("Cloth::substeps", self.substeps)?;
+        count("Cloth::max_substeps", self.max_substeps)?;
         check("Cloth::gravity_scale", self.gravity_scale, true, "finite")?;
         let slack = self.tether_slack.unwrap_or_default();
         check("Cloth::tether_slack", slack, slack >= 0.0, "0 or greater, or `None`")?;
@@ -105,7 +108,7 @@ pub enum ClothStatus {
     Failed(ClothError),
 }
 
-/// Gravity on all cloth, m/s². Earth's along -Y by default.
+/// Gravity on all cloth, m/s². Earth's along -Y by default. None while it isn't finite, with one warning.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, Clone, PartialEq)]
 pub struct ClothGravity(pub Vec3);
@@ -147,7 +150,7 @@ pub struct ClothReset {
 pub enum ResetCause {
     /// [`reset_cloth`](crate::prelude::ClothCommands::reset_cloth): it is back in its rest shape.
     Requested,
-    /// Its mesh or the scale of its transform has changed: it is in its new rest shape.
+    /// Its mesh has changed: it is in its new rest shape.
     Rebuilt,
     /// A position or velocity was no longer finite: it is in its last finite pose, at rest.
     NotFinite,

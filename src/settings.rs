@@ -4,31 +4,26 @@ use bevy::prelude::*;
 
 use crate::{anchor, cloth::Cloth, cloth::ClothStatus, fabric::Fabric, state::ClothState};
 
-/// Reads changed [`Cloth`] and [`Fabric`] components.
+/// Reads changed [`Cloth`] and [`Fabric`] components. Refusals are told once, until all is valid again: a slider that
+/// is held at a bad value sends one every frame.
 pub(crate) fn update_settings(
-    mut cloths: Query<
-        (Entity, Ref<Cloth>, Ref<Fabric>, &mut ClothState, &ClothStatus),
-        Or<(Changed<Cloth>, Changed<Fabric>)>,
-    >,
+    mut cloths: Query<(Entity, &Cloth, &Fabric, &mut ClothState, &ClothStatus), Or<(Changed<Cloth>, Changed<Fabric>)>>,
 ) {
     for (entity, cloth, fabric, mut state, status) in &mut cloths {
         if *status != ClothStatus::Ready {
             continue;
         }
-        if cloth.is_changed() {
-            match cloth.validate() {
-                Ok(()) => state.settings = Cloth::clone(&cloth),
-                Err(error) => warn!("cloth {entity} keeps the settings that it had: {error}"),
+        let settings = cloth.validate().map(|()| state.settings = cloth.clone());
+        let material = fabric.material().map(|material| {
+            state.material = Some(material);
+            anchor::set_masses(&mut state);
+        });
+        let refusals: Vec<_> = settings.err().into_iter().chain(material.err()).collect();
+        if !state.said.refused {
+            for error in &refusals {
+                warn!("cloth {entity} keeps what it had: {error}");
             }
         }
-        if fabric.is_changed() {
-            match fabric.material() {
-                Ok(material) => {
-                    state.material = Some(material);
-                    anchor::set_masses(&mut state);
-                }
-                Err(error) => warn!("cloth {entity} keeps the fabric that it had: {error}"),
-            }
-        }
+        state.said.refused = !refusals.is_empty();
     }
 }

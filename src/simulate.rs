@@ -29,9 +29,15 @@ pub(crate) fn step_cloths(
     winds: Res<Winds>,
     _main_thread: NonSendMarker,
 ) {
+    let gravity = if gravity.0.is_finite() {
+        gravity.0
+    } else {
+        warn_once!("ClothGravity isn't finite: cloth has no gravity until it is; set it to a finite acceleration");
+        Vec3::ZERO
+    };
     for_each(&mut cloths, run.parallel, |(status, mut state)| {
         if *status == ClothStatus::Ready {
-            step_cloth(&mut state, &time, gravity.0, &obstacles, &winds);
+            step_cloth(&mut state, &time, gravity, &obstacles, &winds);
         }
     });
 }

@@ -11,6 +11,7 @@ use crate::{
     anchor::HeldPin,
     build::weld::NO_PARTICLE,
     cloth::Cloth,
+    draw::carrier::Carrier,
     solver::{Anchor, Material, Obstacle, Particles, Scratch, StepReport, Tether, Topology, WindSource},
 };
 
@@ -43,6 +44,8 @@ pub struct ClothState {
     pub(crate) tethers: Vec<Tether>,
     /// Transform of the entity at the latest step.
     pub(crate) pose: Affine3A,
+    /// The entity that carries the cloth, if one does.
+    pub(crate) carrier: Option<Carrier>,
     /// Number of steps since the cloth was built: drawing skips what hasn't moved.
     pub(crate) steps: u64,
     /// What the latest step did.
@@ -71,6 +74,8 @@ pub(crate) struct Said {
     pub softened: bool,
     /// The state became non-finite.
     pub not_finite: bool,
+    /// A setting is out of its range.
+    pub refused: bool,
 }
 
 /// Buffers that a step fills anew.
@@ -104,6 +109,17 @@ impl ClothState {
     /// World positions of all particles after the latest step, m.
     pub fn positions(&self) -> impl ExactSizeIterator<Item = Vec3> {
         self.particles.position.iter().map(|&p| self.origin + Vec3::from(p))
+    }
+
+    /// World position, m, that the cloth's own positions are relative to. It stays near the cloth.
+    pub fn origin(&self) -> Vec3 {
+        self.origin
+    }
+
+    /// Positions of all particles relative to [`origin`](Self::origin), m: exact where world positions, far from the
+    /// world's origin, no longer are.
+    pub fn positions_from_origin(&self) -> impl ExactSizeIterator<Item = Vec3> {
+        self.particles.position.iter().copied().map(Vec3::from)
     }
 
     /// Velocity of a particle, m/s. A pinned particle has the velocity of its pin.

@@ -10,7 +10,7 @@ use bevy::{
     prelude::*,
 };
 
-use super::{binding::Binding, shading};
+use super::{binding::Binding, carrier::Carrier, shading};
 use crate::{anchor::is_invertible, build::weld::NO_PARTICLE, schedule::ClothClock, state::ClothState};
 
 /// The meshes of a cloth: the one that it was made from, and its own copy, which is drawn.
@@ -35,7 +35,7 @@ pub(crate) struct Shape {
     tangents: Vec<[f32; 4]>,
     bounds: Option<Aabb3d>,
     /// What the data was computed from; the same again needs no work.
-    key: Option<(u64, f32, Affine3A)>,
+    key: Option<(u64, f32, Affine3A, Affine3A)>,
     /// The mesh asset doesn't have the data yet.
     is_new: bool,
     particles: Vec<Vec3A>,
@@ -45,6 +45,7 @@ pub(crate) struct Shape {
 /// Computes what every cloth looks like at the moment that is drawn.
 pub(crate) fn shape_cloths(
     mut cloths: Query<(&ClothState, &mut ClothMesh, &GlobalTransform)>,
+    poses: Query<&GlobalTransform>,
     clock: ClothClock,
     _main_thread: NonSendMarker,
 ) {
@@ -53,7 +54,11 @@ pub(crate) fn shape_cloths(
         let ClothMesh { binding, shape, .. } = &mut *mesh;
         // Until the next step does a teleport, the cloth is drawn as if it had been done.
         let pose = if state.requests.teleport { state.pose } else { transform.affine() };
-        shape.update(state, binding, pose, now);
+        let carried_by = |carrier: &Carrier| {
+            let pose = poses.get(carrier.entity).ok().filter(|_| !state.requests.teleport)?;
+            Some((*carrier, pose.affine()))
+        };
+        shape.update(state, binding, pose, state.carrier.as_ref().and_then(carried_by), now);
     });
 }
 
@@ -82,20 +87,32 @@ impl Shape {
         Self { positions, ..default() }
     }
 
-    /// Interpolates the latest step at `now` (0..=1) and shades it. `pose` takes the mesh to the world.
-    fn update(&mut self, state: &ClothState, binding: &Binding, pose: Affine3A, now: f32) {
-        let key = (state.steps, now, pose);
+    /// Interpolates the latest step at `now` (0..=1) and shades it. `pose` takes the mesh to the world; `carrier` is
+    /// where the entity that carries the cloth is by now.
+    fn update(
+        &mut self,
+        state: &ClothState,
+        binding: &Binding,
+        pose: Affine3A,
+        carrier: Option<(Carrier, Affine3A)>,
+        now: f32,
+    ) {
+        // Differences first: far from the world's origin, only they have precision left.
+        let origin = Vec3A::from(state.origin);
+        let carry = match carrier {
+            Some((carrier, place)) => carrier.carry(origin, now, place, pose.translation),
+            None => Affine3A::from_translation((origin - pose.translation).into()),
+        };
+        let key = (state.steps, now, pose, carry);
         if state.particles.is_empty() || self.key == Some(key) || !is_invertible(&pose) {
             return;
         }
         self.key = Some(key);
         self.is_new = true;
-        // Differences first: far from the world's origin, only they have precision left.
         let to_local = pose.matrix3.inverse();
-        let offset = Vec3A::from(state.origin) - pose.translation;
         let steps = state.step_start.iter().zip(&state.particles.position);
         self.particles.clear();
-        self.particles.extend(steps.map(|(start, &end)| to_local * (start.lerp(end, now) + offset)));
+        self.particles.extend(steps.map(|(start, &end)| to_local * carry.transform_point3a(start.lerp(end, now))));
         for (place, &particle) in self.positions.iter_mut().zip(&*binding.particle_of_vertex) {
             if particle != NO_PARTICLE {
                 *place = self.particles[particle as usize].to_array();

@@ -79,9 +79,9 @@ fn a_cloth_is_not_written_while_time_stands_still() {
 }
 
 #[test]
-fn a_paused_cloth_stays_in_the_world_when_its_entity_moves() {
+fn a_paused_cloth_that_nothing_carries_stays_in_the_world_when_its_entity_moves() {
     let mut app = headless();
-    let cloth = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 5, 5), Pins::corners());
+    let cloth = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 5, 5), Pins::corners().to_world());
     run(&mut app, 10);
     pause(&mut app);
     run(&mut app, 1);
@@ -91,4 +91,35 @@ fn a_paused_cloth_stays_in_the_world_when_its_entity_moves() {
     for (now, before) in points(drawn(&app, cloth)).into_iter().zip(before) {
         assert_close(now, before - Vec3::X * 2.0, 1e-6);
     }
+}
+
+/// How far pinned corners are drawn from where they are on an entity that moves and turns in every update.
+fn farthest_from_carrier(pins: impl Fn(Entity) -> Pins, carrier_is_cloth: bool) -> f32 {
+    let mut app = headless();
+    set_rates(&mut app, 1.0 / 64.0, 1.0 / 20.0);
+    let grid = ClothGrid::new(1.0, 1.0, 5, 5);
+    let pole = app.world_mut().spawn(Transform::default()).id();
+    let cloth = spawn_cloth(&mut app, grid, pins(pole));
+    let carrier = if carrier_is_cloth { cloth } else { pole };
+    run(&mut app, 5);
+    let mut farthest = 0.0_f32;
+    for _ in 0..60 {
+        let mut transform = app.world_mut().get_mut::<Transform>(carrier).unwrap();
+        transform.translation.x += 5.0 / 64.0;
+        transform.rotate_y(0.02);
+        run(&mut app, 1);
+        let shown = points(drawn(&app, cloth));
+        let (of_cloth, of_carrier) = (get::<GlobalTransform>(&app, cloth), get::<GlobalTransform>(&app, carrier));
+        let wanted = of_carrier.transform_point(points(&grid.into())[0]);
+        farthest = farthest.max(of_cloth.transform_point(shown[0]).distance(wanted));
+    }
+    farthest
+}
+
+#[test]
+fn a_cloth_is_drawn_on_the_entity_that_carries_it_wherever_that_is_by_now() {
+    let on_itself = farthest_from_carrier(|_| Pins::edge(ClothEdge::Top), true);
+    assert!(on_itself < 1e-4, "{on_itself} m");
+    let on_a_pole = farthest_from_carrier(|pole| Pins::edge(ClothEdge::Top).to_entity(pole), false);
+    assert!(on_a_pole < 1e-4, "{on_a_pole} m");
 }
