@@ -50,7 +50,6 @@ fn hang(criterion: &mut Criterion) {
             obstacles: &[],
             fluid_density: air,
             winds: &[],
-            time: 0.0,
         };
         let mut scratch = Scratch::default();
         group.bench_function(BenchmarkId::new(name, n), |bencher| {

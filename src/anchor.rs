@@ -22,9 +22,9 @@ const FARTHEST: f32 = 256.0;
 pub(crate) struct HeldPin {
     pub particle: u32,
     pub target: PinTarget,
-    /// Its place in the target's own space; for [`PinTarget::World`], and for a target that can't be inverted, its
-    /// place relative to the cloth's origin.
-    pub offset: Vec3A,
+    /// Its place in the target's own space, once the target has a pose that can be followed; for
+    /// [`PinTarget::World`] its place relative to the cloth's origin.
+    pub offset: Option<Vec3A>,
 }
 
 /// World poses of entities, up to date within a frame.
@@ -41,9 +41,10 @@ pub(crate) fn update_pins(
         if *status != ClothStatus::Ready {
             continue;
         }
-        match targets_by_particle(pins, source, &state.particle_of_vertex, &state.topology) {
-            Ok(targets) => hold(&mut state, &targets, entity, &poses),
-            Err(error) => warn!("cloth {entity} keeps the pins that it had: {error}"),
+        let (targets, refused) = targets_by_particle(pins, source, &state.particle_of_vertex, &state.topology);
+        match refused.first() {
+            None => hold(&mut state, &targets, entity, &poses),
+            Some((_, error)) => warn!("cloth {entity} keeps the pins that it had: {error}"),
         }
     }
 }
@@ -59,12 +60,7 @@ pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity,
             let held = state.pins.binary_search_by_key(&particle, |pin| pin.particle).ok();
             let kept = held.map(|i| state.pins[i]).filter(|pin| pin.target == target);
             kept.unwrap_or_else(|| {
-                let place = state.particles.position[particle as usize];
-                let pose = target_pose(target, cloth, poses);
-                let offset = match pose {
-                    Some(pose) => pose.matrix3.inverse() * (place + (Vec3A::from(state.origin) - pose.translation)),
-                    None => place,
-                };
+                let offset = (target == PinTarget::World).then(|| state.particles.position[particle as usize]);
                 HeldPin { particle, target, offset }
             })
         })
@@ -76,6 +72,8 @@ pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity,
     state.tethers = build::tethers(&state.topology, &particles);
     state.pins = pins;
     set_masses(state);
+    plan_anchors(state, cloth, poses);
+    state.carrier = carrier(state, cloth, poses);
 }
 
 /// Gives free particles their mass, and fixed ones none that could be moved.
@@ -114,7 +112,7 @@ fn plan_anchors(state: &mut ClothState, cloth: Entity, poses: &Poses) {
     // Pins of one target stand together mostly: its pose is looked up once.
     let mut latest: Option<(PinTarget, Option<Affine3A>)> = None;
     state.work.anchors.clear();
-    for pin in &state.pins {
+    for pin in &mut state.pins {
         let pose = match latest {
             Some((target, pose)) if target == pin.target => pose,
             _ => target_pose(pin.target, cloth, poses),
@@ -122,9 +120,13 @@ fn plan_anchors(state: &mut ClothState, cloth: Entity, poses: &Poses) {
         latest = Some((pin.target, pose));
         let start = state.particles.position[pin.particle as usize];
         let end = match (pin.target, pose) {
-            (_, Some(pose)) => pose.matrix3 * pin.offset + (pose.translation - origin),
-            (PinTarget::World, None) => pin.offset,
-            // The target is gone: stay.
+            (PinTarget::World, _) => pin.offset.unwrap_or(start),
+            (_, Some(pose)) => {
+                let from_pose = pose.translation - origin;
+                let offset = *pin.offset.get_or_insert_with(|| pose.matrix3.inverse() * (start - from_pose));
+                pose.matrix3 * offset + from_pose
+            }
+            // The target is gone, flat or not there yet: stay.
             (_, None) => start,
         };
         let end = if end.is_finite() { end } else { start };
@@ -166,7 +168,9 @@ fn teleport(state: &mut ClothState, pose: Affine3A) {
     if !is_invertible(&state.pose) || !is_invertible(&pose) {
         return;
     }
-    let turn = pose.matrix3 * state.pose.matrix3.inverse();
+    // Without the scale, which the springs' lengths don't follow.
+    let turn = Affine3A { matrix3: pose.matrix3 * state.pose.matrix3.inverse(), translation: Vec3A::ZERO };
+    let turn = turn.to_scale_rotation_translation().1;
     let (old_place, old_origin) = (state.pose.translation, Vec3A::from(state.origin));
     let carry = |p: &mut Vec3A| *p = turn * (*p + (old_origin - old_place));
     state.origin = pose.translation.into();
@@ -176,8 +180,8 @@ fn teleport(state: &mut ClothState, pose: Affine3A) {
     for velocity in &mut state.particles.velocity {
         *velocity = turn * *velocity;
     }
-    for pin in state.pins.iter_mut().filter(|pin| pin.target == PinTarget::World) {
-        carry(&mut pin.offset);
+    for offset in world_places(&mut state.pins) {
+        carry(offset);
     }
 }
 
@@ -192,7 +196,12 @@ fn stay_near_origin(state: &mut ClothState) {
     for positions in [&mut state.particles.position, &mut state.step_start] {
         positions.iter_mut().for_each(|p| *p -= shift);
     }
-    for pin in state.pins.iter_mut().filter(|pin| pin.target == PinTarget::World) {
-        pin.offset -= shift;
+    for offset in world_places(&mut state.pins) {
+        *offset -= shift;
     }
+}
+
+/// Places of the pins to the world, which are relative to the cloth's origin.
+fn world_places(pins: &mut [HeldPin]) -> impl Iterator<Item = &mut Vec3A> {
+    pins.iter_mut().filter(|pin| pin.target == PinTarget::World).filter_map(|pin| pin.offset.as_mut())
 }

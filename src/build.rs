@@ -8,6 +8,7 @@ mod cells;
 mod coloring;
 mod edges;
 mod geodesic;
+pub(crate) mod plan;
 pub(crate) mod source;
 mod springs;
 pub(crate) mod system;

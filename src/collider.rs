@@ -82,7 +82,12 @@ impl ClothCollider {
     /// Shape and world pose under a transform. None where nothing solid is left.
     fn placed(&self, pose: Affine3A) -> Option<(Shape, Isometry3d)> {
         let (scale, rotation, translation) = pose.to_scale_rotation_translation();
-        let shape = scaled(self.shape, scale.abs())?;
+        let mut shape = scaled(self.shape, scale.abs())?;
+        if let Shape::HalfSpace(plane) = &mut shape {
+            // A plane's normal goes by the inverse transpose: exact under any scale, mirrored or not.
+            let world = pose.matrix3.inverse().transpose() * Vec3A::from(Vec3::from(plane.normal));
+            plane.normal = Dir3::new(rotation.inverse() * Vec3::from(world)).ok()?;
+        }
         let pose = Isometry3d::new(translation, rotation);
         let is_finite = pose.translation.is_finite() && pose.rotation.is_finite() && self.friction.is_finite();
         (is_finite && self.friction >= 0.0).then_some((shape, pose))
@@ -124,6 +129,11 @@ pub(crate) struct ColliderMemory {
     pose: Option<Isometry3d>,
     /// The collider was left out and a warning said so.
     warned: bool,
+}
+
+/// Forgets where a collider was: if it comes back, it comes out of nowhere and not from there.
+pub(crate) fn on_collider_removed(removed: On<Remove, ClothCollider>, mut commands: Commands) {
+    commands.entity(removed.entity).try_remove::<ColliderMemory>();
 }
 
 /// All obstacles of the coming step, in world space.

@@ -5,7 +5,7 @@ use bevy::{ecs::system::EntityCommands, prelude::*};
 use crate::{
     cloth::{Cloth, ClothStatus},
     draw::mesh::{self, ClothMesh},
-    pins::{PinGroup, PinTarget, Pins},
+    pins::{PinGroup, PinTarget, Pins, targets_by_particle},
     state::ClothState,
 };
 
@@ -45,7 +45,10 @@ impl ClothCommands for EntityCommands<'_> {
 
     fn pin_cloth(&mut self, pins: Pins) -> &mut Self {
         self.queue_silenced(|mut entity: EntityWorldMut| {
+            let pins = without_refused(pins, &entity);
             if let Some(mut own) = entity.get_mut::<Pins>() {
+                // What is chosen again is overridden whole: groups don't pile up where pins come and go.
+                own.groups.retain(|old| pins.groups.iter().all(|new| new.select != old.select));
                 own.groups.extend(pins.groups);
             }
         })
@@ -68,6 +71,20 @@ impl ClothCommands for EntityCommands<'_> {
     }
 }
 
+/// Leaves out the groups that don't fit a running cloth's mesh: kept, they would keep later ones from being read.
+fn without_refused(mut pins: Pins, entity: &EntityWorldMut) -> Pins {
+    let is_running = entity.get::<ClothStatus>() == Some(&ClothStatus::Ready);
+    let meshes = entity.world().get_resource::<Assets<Mesh>>().filter(|_| is_running);
+    let source = entity.get::<ClothMesh>().zip(meshes).and_then(|(own, meshes)| meshes.get(&own.source));
+    let (Some(state), Some(mesh)) = (entity.get::<ClothState>(), source) else { return pins };
+    let (_, refused) = targets_by_particle(&pins, mesh, &state.particle_of_vertex, &state.topology);
+    for (group, error) in refused.into_iter().rev() {
+        warn!("cloth {} leaves these pins out: {error}", entity.id());
+        pins.groups.remove(group);
+    }
+    pins
+}
+
 /// Leaves a plain mesh behind where [`Cloth`] is removed: as it was drawn last, with bounds that are its own again.
 pub(crate) fn on_cloth_removed(
     removed: On<Remove, Cloth>,
@@ -76,7 +93,7 @@ pub(crate) fn on_cloth_removed(
     meshes: Option<ResMut<Assets<Mesh>>>,
 ) {
     if let (Ok(cloth), Some(mut meshes)) = (cloths.get(removed.entity), meshes) {
-        mesh::release(meshes.get_mut(&cloth.drawn));
+        mesh::release(&cloth.drawn, &mut meshes);
     }
     commands.entity(removed.entity).try_remove::<(ClothMesh, ClothState, ClothStatus)>();
 }

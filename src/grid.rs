@@ -37,7 +37,7 @@ impl ClothGrid {
 
     /// Index of the vertex, and of the particle, at a place in the grid.
     pub fn vertex(&self, column: u32, row: u32) -> u32 {
-        row * self.particles.x + column
+        row * self.particles.x.max(2) + column
     }
 }
 

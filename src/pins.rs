@@ -34,7 +34,7 @@ pub const ATTRIBUTE_PIN: MeshVertexAttribute = MeshVertexAttribute::new("Pin", 0
 /// let flag = |pole: Entity| Pins::edge(ClothEdge::Left).to_entity(pole);
 /// let mixed = Pins::indices([0, 31]).to_world().and(Pins::region(Vec3::ZERO, Vec3::ONE));
 /// ```
-#[derive(Component, Clone, Debug, Default, Reflect)]
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[component(map_entities)]
 #[reflect(Component, Default, Debug, Clone, MapEntities)]
 pub struct Pins {
@@ -43,7 +43,7 @@ pub struct Pins {
 }
 
 /// Some vertices and what they are fixed to.
-#[derive(Clone, Debug, Default, Reflect)]
+#[derive(Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Debug, Clone)]
 pub struct PinGroup {
     /// Which vertices.
@@ -53,7 +53,7 @@ pub struct PinGroup {
 }
 
 /// Chooses vertices of a mesh.
-#[derive(Clone, Debug, Reflect)]
+#[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Default, Debug, Clone)]
 #[non_exhaustive]
 pub enum PinSelector {

@@ -84,13 +84,16 @@ impl Plugin for ClothPlugin {
         app.init_resource::<cloth::ClothGravity>()
             .init_resource::<collider::Obstacles>()
             .init_resource::<wind::Winds>()
-            .init_resource::<build::system::TopologyCache>()
+            .init_resource::<build::plan::PlanCache>()
             .insert_resource(ClothRun { fixed: self.is_fixed(), parallel: self.parallel })
             .configure_sets(PreUpdate, ClothSystems::Prepare.run_if(has_what_it_needs))
             .configure_sets(
                 self.schedule,
                 (ClothSystems::Gather, ClothSystems::Simulate, ClothSystems::Finalize)
                     .chain()
+                    // Where the schedule is also theirs.
+                    .after(ClothSystems::Prepare)
+                    .before(ClothSystems::Draw)
                     .run_if(has_what_it_needs),
             )
             .configure_sets(
@@ -124,7 +127,8 @@ impl Plugin for ClothPlugin {
                 PostUpdate,
                 (draw::mesh::shape_cloths, draw::mesh::write_meshes).chain().in_set(ClothSystems::Draw),
             )
-            .add_observer(commands::on_cloth_removed);
+            .add_observer(commands::on_cloth_removed)
+            .add_observer(collider::on_collider_removed);
     }
 
     /// Says what is missing, once all plugins are there.

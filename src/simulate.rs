@@ -88,12 +88,15 @@ fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Ob
         obstacles: near,
         fluid_density: state.settings.fluid_density,
         winds: felt,
-        time: time.elapsed_secs(),
     };
     state.step_start.clone_from(&state.particles.position);
     state.report = Some(solver::step(&mut state.particles, &state.topology, &ctx, scratch));
     state.particles.force.fill(Vec3A::ZERO);
-    state.steps += 1;
+    let was_still = core::mem::replace(&mut state.is_still, state.particles.position == state.step_start);
+    // The first step that moves nothing counts: what is drawn still comes to rest with it.
+    if !(was_still && state.is_still) {
+        state.steps += 1;
+    }
     *recovered = !state.particles.is_finite();
     if *recovered {
         state.particles.position.clone_from(&state.step_start);

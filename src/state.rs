@@ -46,8 +46,10 @@ pub struct ClothState {
     pub(crate) pose: Affine3A,
     /// The entity that carries the cloth, if one does.
     pub(crate) carrier: Option<Carrier>,
-    /// Number of steps since the cloth was built: drawing skips what hasn't moved.
+    /// Number of steps that moved something since the cloth was built: drawing skips what hasn't moved.
     pub(crate) steps: u64,
+    /// The latest step moved nothing.
+    pub(crate) is_still: bool,
     /// What the latest step did.
     pub(crate) report: Option<StepReport>,
     /// What has been asked for and is done at the next occasion.

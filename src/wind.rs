@@ -1,7 +1,7 @@
 //! Winds: entities that blow on cloth.
 
 use bevy::{
-    math::{Isometry3d, Vec3A},
+    math::{DVec3, Isometry3d, Vec3A},
     prelude::*,
 };
 
@@ -25,7 +25,8 @@ use crate::{
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(Transform, WindMemory)]
 pub struct Wind {
-    /// Mean velocity in m/s, in the entity's own space. 2 is a light breeze, 8 a fresh one, 20 a gale.
+    /// Mean velocity in m/s, in the entity's own space. 2 is a light breeze, 8 a fresh one, 20 a gale. From about 3 on,
+    /// wind lifts light cloth that only lies on something: give it a region then.
     pub velocity: Vec3,
     /// Where it blows.
     pub region: WindShape,
@@ -37,7 +38,7 @@ pub struct Wind {
     pub gust_period: f32,
     /// Strength of eddies as a share of the mean speed. 0 for none, 0.1 over open land, 0.3 in a town.
     pub turbulence: f32,
-    /// Size of the eddies in m. 0.3 to 5.
+    /// Size of the eddies in m. 0.3 to 5. A cloth of more than three of them feels them coarser than they are.
     pub eddy_size: f32,
     /// Seed of gusts and eddies: the same seed blows the same on every run.
     pub seed: u32,
@@ -74,8 +75,8 @@ pub enum WindShape {
 
 impl Wind {
     /// The wind in the world. None where a value isn't finite or a size is negative.
-    fn placed(&self, pose: &GlobalTransform) -> Option<WindSource> {
-        let (scale, rotation, translation) = pose.to_scale_rotation_translation();
+    fn placed(&self, transform: &GlobalTransform) -> Option<WindSource> {
+        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
         let pose = Isometry3d::new(translation, rotation);
         let (region, size) = match self.region {
             WindShape::Everywhere => (WindRegion::Everywhere, 0.0),
@@ -90,7 +91,9 @@ impl Wind {
                 (region, half_size.min_element())
             }
         };
-        let velocity = Vec3A::from(rotation * self.velocity);
+        // Turned, and mirrored, as the entity is, and as fast at any scale.
+        let direction = transform.affine().matrix3 * Vec3A::from(self.velocity);
+        let velocity = direction.normalize_or_zero() * self.velocity.length();
         let shares = [self.edge, self.gusts, self.gust_period, self.turbulence, self.eddy_size];
         let is_valid = shares.iter().chain([&size]).all(|v| v.is_finite() && *v >= 0.0)
             && velocity.is_finite()
@@ -106,6 +109,8 @@ impl Wind {
             },
             region,
             origin: Vec3A::ZERO,
+            travelled: DVec3::ZERO,
+            gusts_passed: 0.0,
         })
     }
 }
@@ -115,6 +120,10 @@ impl Wind {
 pub(crate) struct WindMemory {
     /// The wind was left out and a warning said so.
     warned: bool,
+    /// How far its air has come, m.
+    travelled: DVec3,
+    /// How many gusts have come.
+    gusts_passed: f64,
 }
 
 /// All winds of the coming step, in world space.
@@ -141,6 +150,7 @@ pub(crate) fn gather_winds(
     mut sources: Query<(Entity, &Wind, &mut WindMemory)>,
     mut winds: ResMut<Winds>,
     poses: Poses,
+    time: Res<Time>,
 ) {
     winds.list.clear();
     for (entity, wind, mut memory) in &mut sources {
@@ -150,7 +160,14 @@ pub(crate) fn gather_winds(
             warn!("wind {entity} is left out: give it finite values, and sizes of zero or more");
         }
         memory.warned = placed.is_none();
-        winds.list.extend(placed.map(|wind| (entity, wind)));
+        if let Some(wind) = placed {
+            let WindMemory { travelled, gusts_passed, .. } = *memory;
+            let mut wind = WindSource { travelled, gusts_passed, ..wind };
+            wind.advance(time.delta_secs());
+            memory.travelled = wind.travelled;
+            memory.gusts_passed = wind.gusts_passed;
+            winds.list.push((entity, wind));
+        }
     }
     // Sums come out the same whatever order the world keeps its entities in.
     winds.list.sort_unstable_by_key(|&(entity, _)| entity);

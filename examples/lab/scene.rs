@@ -47,7 +47,6 @@ impl Scene {
             obstacles: &self.obstacles,
             fluid_density: 0.0,
             winds: &[],
-            time: 0.0,
         }
     }
 }

@@ -64,6 +64,8 @@ struct Search<'a> {
     fans: Vec<Vec<[u32; 2]>>,
     /// What is settled, nearest first.
     labels: Vec<Vec<Label>>,
+    /// The shortest proposal for each particle and pin so far.
+    proposed: Vec<Vec<Label>>,
     /// Proposals (distance, particle, pin), the shortest first.
     queue: BinaryHeap<Reverse<(FloatOrd, u32, u32)>>,
 }
@@ -81,11 +83,18 @@ impl<'a> Search<'a> {
             rest: &topology.rest,
             fans,
             labels: vec![Vec::new(); topology.particle_count()],
+            proposed: vec![Vec::new(); topology.particle_count()],
             queue: BinaryHeap::new(),
         }
     }
 
     fn propose(&mut self, particle: u32, pin: u32, distance: f32) {
+        let proposed = &mut self.proposed[particle as usize];
+        match proposed.iter_mut().find(|label| label.pin == pin) {
+            Some(label) if label.distance <= distance => return,
+            Some(label) => label.distance = distance,
+            None => proposed.push(Label { pin, distance }),
+        }
         self.queue.push(Reverse((FloatOrd(distance), particle, pin)));
     }
 
@@ -115,17 +124,11 @@ impl<'a> Search<'a> {
             for (known, unknown) in [(a, b), (b, a)] {
                 if let Some(length) = self.distance_to(pin, known) {
                     let length = self.unfold([particle, known], [distance, length], unknown);
-                    self.propose_shorter(unknown, pin, length);
+                    self.propose(unknown, pin, length);
                 }
                 let along = distance + self.edge(particle, unknown);
-                self.propose_shorter(unknown, pin, along);
+                self.propose(unknown, pin, along);
             }
-        }
-    }
-
-    fn propose_shorter(&mut self, particle: u32, pin: u32, distance: f32) {
-        if self.distance_to(pin, particle).is_none() {
-            self.propose(particle, pin, distance);
         }
     }
 

@@ -1,16 +1,16 @@
 //! Waits for meshes, makes cloth of them, and says how it went.
 
-use std::sync::{Arc, Weak};
+use std::sync::Arc;
 
 use bevy::{
     asset::{LoadState, RenderAssetUsages},
     ecs::query::QueryData,
-    math::{Affine3A, Vec3A},
+    math::Vec3A,
     platform::collections::{HashMap, HashSet},
     prelude::*,
 };
 
-use super::{particles_of, source::SourceMesh};
+use super::plan::PlanCache;
 use crate::{
     anchor::{self, Poses},
     cloth::{Cloth, ClothFailed, ClothReady, ClothReset, ClothStatus, ResetCause},
@@ -21,7 +21,7 @@ use crate::{
     error::ClothError,
     fabric::Fabric,
     pins::{Pins, targets_by_particle},
-    solver::{Particles, Topology},
+    solver::Particles,
     state::ClothState,
 };
 
@@ -57,16 +57,19 @@ pub(crate) fn build_cloths(
     mut meshes: ResMut<Assets<Mesh>>,
     mut mesh_events: MessageReader<AssetEvent<Mesh>>,
     assets: Option<Res<AssetServer>>,
-    mut cache: ResMut<TopologyCache>,
+    mut cache: ResMut<PlanCache>,
     poses: Poses,
 ) {
     let news = MeshNews::read(&mut mesh_events);
-    cache.forget(&news.changed);
+    cache.forget_unused();
+    // The user's mesh of each copy that is drawn, also where another cloth was given that copy.
+    let sources: HashMap<_, _> =
+        candidates.iter().filter_map(|c| c.own_mesh).map(|own| (own.drawn.id(), own.source.clone())).collect();
     for mut candidate in &mut candidates {
-        let source = candidate.source();
+        let source = sources.get(&candidate.mesh.id()).unwrap_or(&candidate.mesh.0).clone();
         let Some(cause) = candidate.cause(&source, &news) else { continue };
         let built = match meshes.get(&source) {
-            Some(mesh) => candidate.build(mesh, &source, &mut cache, &poses),
+            Some(mesh) => candidate.build(mesh, &mut cache, &poses),
             None => match assets.as_ref().map(|assets| assets.load_state(&source)) {
                 Some(LoadState::Failed(error)) => Err(ClothError::NotLoaded { reason: error.to_string() }),
                 _ => {
@@ -119,14 +122,6 @@ struct Built {
 }
 
 impl CandidateItem<'_, '_> {
-    /// The mesh that the cloth is made from: the user's, not the copy that is drawn.
-    fn source(&self) -> Handle<Mesh> {
-        match self.own_mesh {
-            Some(own) if own.drawn == self.mesh.0 => own.source.clone(),
-            _ => self.mesh.0.clone(),
-        }
-    }
-
     /// Why the cloth has to be built now, if it has to.
     fn cause(&self, source: &Handle<Mesh>, news: &MeshNews) -> Option<Cause> {
         let changed = news.changed.contains(&source.id());
@@ -158,13 +153,7 @@ impl CandidateItem<'_, '_> {
         }
     }
 
-    fn build(
-        &self,
-        mesh: &Mesh,
-        source: &Handle<Mesh>,
-        cache: &mut TopologyCache,
-        poses: &Poses,
-    ) -> Result<Built, ClothError> {
+    fn build(&self, mesh: &Mesh, cache: &mut PlanCache, poses: &Poses) -> Result<Built, ClothError> {
         self.cloth.validate()?;
         let material = self.fabric.material()?;
         let pose = poses
@@ -177,8 +166,12 @@ impl CandidateItem<'_, '_> {
         if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
             return Err(ClothError::NotInMainWorld);
         }
-        let plan = cache.plan(source.id(), mesh, &pose)?;
-        let targets = targets_by_particle(&self.pins, mesh, &plan.binding.particle_of_vertex, &plan.topology)?;
+        let plan = cache.plan(mesh, pose.matrix3)?;
+        let (targets, refused) =
+            targets_by_particle(&self.pins, mesh, &plan.binding.particle_of_vertex, &plan.topology);
+        if let Some((_, error)) = refused.into_iter().next() {
+            return Err(error);
+        }
         let rest: Vec<Vec3A> = plan.topology.rest.iter().copied().map(Vec3A::from).collect();
         let mut state = ClothState {
             step_start: rest.clone(),
@@ -195,7 +188,17 @@ impl CandidateItem<'_, '_> {
             ..default()
         };
         anchor::hold(&mut state, &targets, self.entity, poses);
-        Ok(Built { state, binding: plan.binding, mesh: mesh.clone(), positions: plan.positions })
+        Ok(Built { state, binding: plan.binding, mesh: self.copy_of(mesh), positions: plan.positions })
+    }
+
+    /// The mesh that is drawn. Its particles are in their place already: no skin may deform it once more.
+    fn copy_of(&self, mesh: &Mesh) -> Mesh {
+        let mut copy = mesh.clone();
+        let skin = [Mesh::ATTRIBUTE_JOINT_INDEX, Mesh::ATTRIBUTE_JOINT_WEIGHT];
+        if skin.map(|attribute| copy.try_remove_attribute(attribute).is_ok()).contains(&true) {
+            warn!("cloth {} is simulated from its bind pose: its skin isn't followed yet", self.entity);
+        }
+        copy
     }
 
     fn accept(
@@ -237,47 +240,5 @@ impl CandidateItem<'_, '_> {
         warn!("cloth {} can't be built: {error}", self.entity);
         *self.status = ClothStatus::Failed(error.clone());
         commands.trigger(ClothFailed { entity: self.entity, error });
-    }
-}
-
-/// What all cloths of one mesh in one orientation and scale have in common.
-#[derive(Clone, Debug)]
-struct Plan {
-    topology: Arc<Topology>,
-    binding: Arc<Binding>,
-    /// Positions of the mesh's vertices.
-    positions: Vec<[f32; 3]>,
-}
-
-/// A mesh, and the bits of the rotation and scale that it stands in.
-type PlanKey = (AssetId<Mesh>, [u32; 9]);
-
-/// Plans of meshes that are in use, so that a hundred flags are worked out once.
-#[derive(Resource, Debug, Default)]
-pub(crate) struct TopologyCache {
-    plans: HashMap<PlanKey, (Weak<Topology>, Weak<Binding>)>,
-}
-
-impl TopologyCache {
-    /// Drops the plans of meshes that have changed, and those that nobody uses.
-    fn forget(&mut self, changed: &HashSet<AssetId<Mesh>>) {
-        self.plans.retain(|(mesh, _), (topology, _)| topology.strong_count() > 0 && !changed.contains(mesh));
-    }
-
-    /// The plan for `mesh` under `pose`.
-    fn plan(&mut self, id: AssetId<Mesh>, mesh: &Mesh, pose: &Affine3A) -> Result<Plan, ClothError> {
-        let source = SourceMesh::read(mesh)?;
-        let positions = source.positions.iter().map(Vec3::to_array).collect();
-        let key = (id, pose.matrix3.to_cols_array().map(f32::to_bits));
-        if let Some((topology, binding)) = self.plans.get(&key)
-            && let (Some(topology), Some(binding)) = (topology.upgrade(), binding.upgrade())
-        {
-            return Ok(Plan { topology, binding, positions });
-        }
-        let (welded, topology) = particles_of(&source, pose.matrix3)?;
-        let topology = Arc::new(topology);
-        let binding = Arc::new(Binding::new(&source, &welded));
-        self.plans.insert(key, (Arc::downgrade(&topology), Arc::downgrade(&binding)));
-        Ok(Plan { topology, binding, positions })
     }
 }

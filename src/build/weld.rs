@@ -26,7 +26,7 @@ pub(crate) fn weld(positions: &[Vec3], triangles: &[[u32; 3]]) -> Welded {
     for &vertex in triangles.as_flattened() {
         used[vertex as usize] = true;
     }
-    let cell_size = (size(positions) * TOLERANCE).max(f32::MIN_POSITIVE);
+    let cell_size = (size(positions, &used) * TOLERANCE).max(f32::MIN_POSITIVE);
     let mut particle_at: HashMap<IVec3, u32> = HashMap::default();
     let mut welded = Welded { particle_of_vertex: vec![NO_PARTICLE; positions.len()], vertex_of_particle: Vec::new() };
     for vertex in (0..positions.len()).filter(|&v| used[v]) {
@@ -47,11 +47,11 @@ pub(crate) fn weld(positions: &[Vec3], triangles: &[[u32; 3]]) -> Welded {
     welded
 }
 
-/// Diagonal of the box around `positions`.
-fn size(positions: &[Vec3]) -> f32 {
-    let low = positions.iter().fold(Vec3::INFINITY, |a, &b| a.min(b));
-    let high = positions.iter().fold(Vec3::NEG_INFINITY, |a, &b| a.max(b));
-    low.distance(high)
+/// Diagonal of the box around the `positions` that are used.
+fn size(positions: &[Vec3], used: &[bool]) -> f32 {
+    let used = || positions.iter().zip(used).filter(|&(_, &used)| used).map(|(&position, _)| position);
+    let (low, high) = (used().reduce(Vec3::min), used().reduce(Vec3::max));
+    low.zip(high).map_or(0.0, |(low, high)| low.distance(high))
 }
 
 /// A cell and the 26 around it, itself first: positions that round to different cells can still be close.

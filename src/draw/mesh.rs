@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use bevy::{
-    asset::AssetMut,
     ecs::system::NonSendMarker,
     math::{Affine3A, Vec3A, bounding::Aabb3d},
     mesh::{MeshVertexAttribute, VertexAttributeValues},
@@ -74,10 +73,11 @@ pub(crate) fn write_meshes(mut cloths: Query<&mut ClothMesh>, mut meshes: ResMut
     }
 }
 
-/// Lets go of a mesh whose entity is no longer cloth: from now on its bounds follow from its positions again.
-pub(crate) fn release(mesh: Option<AssetMut<Mesh>>) {
-    if let Some(mesh) = mesh {
-        mesh.into_inner().final_aabb = None;
+/// Lets go of a mesh whose entity is no longer cloth: from now on its bounds follow from its positions again. Nothing
+/// that is drawn changes by that, so nobody is told.
+pub(crate) fn release(mesh: &Handle<Mesh>, meshes: &mut Assets<Mesh>) {
+    if let Some(mesh) = meshes.get_mut_untracked(mesh) {
+        mesh.final_aabb = None;
     }
 }
 
@@ -103,6 +103,8 @@ impl Shape {
             Some((carrier, place)) => carrier.carry(origin, now, place, pose.translation),
             None => Affine3A::from_translation((origin - pose.translation).into()),
         };
+        // Where nothing has moved, each moment of the step looks the same.
+        let now = if state.is_still { 1.0 } else { now };
         let key = (state.steps, now, pose, carry);
         if state.particles.is_empty() || self.key == Some(key) || !is_invertible(&pose) {
             return;

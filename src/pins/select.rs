@@ -49,13 +49,24 @@ impl PinPredicate {
     }
 }
 
+/// The same function, not one that does the same.
+impl PartialEq for PinPredicate {
+    fn eq(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+            (None, None) => true,
+            _ => false,
+        }
+    }
+}
+
 impl fmt::Debug for PinPredicate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if self.0.is_some() { "PinPredicate(fn)" } else { "PinPredicate(none)" })
     }
 }
 
-/// What each particle is fixed to, [`PinTarget::Free`] for most.
+/// What each particle is fixed to, [`PinTarget::Free`] for most, and the groups that don't fit the mesh.
 ///
 /// `particle_of_vertex` and `topology` belong to `mesh`.
 pub(crate) fn targets_by_particle(
@@ -63,19 +74,25 @@ pub(crate) fn targets_by_particle(
     mesh: &Mesh,
     particle_of_vertex: &[u32],
     topology: &Topology,
-) -> Result<Vec<PinTarget>, ClothError> {
+) -> (Vec<PinTarget>, Vec<(usize, ClothError)>) {
+    let mut refused = Vec::new();
     let mut targets = vec![PinTarget::Free; topology.particle_count()];
     let selection = Selection { mesh, particle_of_vertex, topology };
-    for group in &pins.groups {
-        for vertex in selection.vertices(&group.select)? {
-            // A mesh that has just changed may have more vertices than the cloth that was made from it.
-            let particle = particle_of_vertex.get(vertex as usize).copied().unwrap_or(NO_PARTICLE);
-            if particle != NO_PARTICLE {
-                targets[particle as usize] = group.to;
+    for (index, group) in pins.groups.iter().enumerate() {
+        match selection.vertices(&group.select) {
+            Ok(vertices) => {
+                for vertex in vertices {
+                    // A mesh that has just changed may have more vertices than the cloth that was made from it.
+                    let particle = particle_of_vertex.get(vertex as usize).copied().unwrap_or(NO_PARTICLE);
+                    if particle != NO_PARTICLE {
+                        targets[particle as usize] = group.to;
+                    }
+                }
             }
+            Err(error) => refused.push((index, error)),
         }
     }
-    Ok(targets)
+    (targets, refused)
 }
 
 /// A mesh to select vertices of.

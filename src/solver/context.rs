@@ -52,8 +52,6 @@ pub struct StepContext<'a> {
     pub fluid_density: f32,
     /// All winds that may reach the cloth.
     pub winds: &'a [WindSource],
-    /// Time since the start of the simulation at the end of this step, s.
-    pub time: f32,
 }
 
 /// What a step did.

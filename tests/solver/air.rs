@@ -1,7 +1,7 @@
 //! The force of the air on triangles.
 
 use bevy::{
-    math::{Isometry3d, Vec3A},
+    math::{DVec3, Isometry3d, Vec3A},
     prelude::*,
 };
 use bevy_drape::{
@@ -14,7 +14,8 @@ use crate::bench_bed::{Bed, GRAVITY, bits};
 const CALM: Gusts = Gusts { strength: 0.0, period: 4.0, turbulence: 0.0, eddy_size: 1.0, seed: 7 };
 
 fn wind(velocity: Vec3A) -> WindSource {
-    WindSource { velocity, gusts: CALM, region: WindRegion::Everywhere, origin: Vec3A::ZERO }
+    let (region, origin) = (WindRegion::Everywhere, Vec3A::ZERO);
+    WindSource { velocity, gusts: CALM, region, origin, travelled: DVec3::ZERO, gusts_passed: 0.0 }
 }
 
 /// A heavy square metre that lies in the air without gravity, all of it free.
@@ -104,9 +105,9 @@ fn a_region_has_a_soft_edge_and_ends() {
 fn gusts_are_the_same_on_every_run_and_differ_by_seed_place_and_time() {
     let blown = |seed: u32, place: f32, start: f32| {
         let mut bed = sheet(1.2, 0.4).pinned([0, 4]);
-        bed.time = start;
         let gusts = Gusts { strength: 0.6, turbulence: 0.3, seed, ..CALM };
         bed.winds = vec![WindSource { gusts, origin: Vec3A::X * place, ..wind(Vec3A::new(3.0, 2.0, 0.0)) }];
+        bed.winds[0].advance(start);
         bed.run(0.5);
         bits(&bed.particles)
     };
@@ -124,8 +125,8 @@ fn eddies_have_the_strength_that_was_asked_for() {
     let (mut sum, mut squares, count) = (0.0, 0.0, 400);
     for moment in 0..count {
         let mut bed = sheet(1.0, 0.0);
-        bed.time = moment as f32 * 0.7;
         bed.winds = vec![WindSource { gusts, ..wind(Vec3A::Y * 4.0) }];
+        bed.winds[0].advance(moment as f32 * 0.7);
         bed.step(1e-4);
         let speed_gained: f32 = bed.particles.velocity[12].y / 1e-4;
         let air_speed = (speed_gained / (0.5 * 1.225)).max(0.0).sqrt();
@@ -136,4 +137,47 @@ fn eddies_have_the_strength_that_was_asked_for() {
     let deviation = (squares / count as f32 - mean * mean).sqrt();
     assert!((mean - 4.0).abs() < 0.3, "{mean} m/s");
     assert!((0.12..0.28).contains(&(deviation / 4.0)), "{deviation} m/s");
+}
+
+/// Change of the air's push from one size of the sheet, or one velocity of the wind, to the next, N.
+fn largest_jump(pushes: Vec<Vec3A>) -> f32 {
+    pushes.array_windows().map(|[one, next]| one.distance(*next)).fold(0.0, f32::max)
+}
+
+#[test]
+fn a_cloth_that_grows_through_the_eddies_feels_no_jump() {
+    let gusts = Gusts { turbulence: 0.3, ..CALM };
+    let push = |i: u32| {
+        let side = 0.9 + 0.002 * i as f32;
+        let grid = ClothGrid::new(side, side, 5, 5).lying();
+        let mut bed = Bed { gravity: Vec3A::ZERO, ..Bed::new(grid, sheet(1.0, 0.0).material) };
+        bed.winds = vec![WindSource { gusts, ..wind(Vec3A::Y * 5.0) }];
+        bed.winds[0].advance(3.0);
+        bed.step(1e-4);
+        bed.particles.velocity[12] / 1e-4
+    };
+    let pushes: Vec<Vec3A> = (0..120).map(push).collect();
+    let strength = pushes[0].length();
+    let jump = largest_jump(pushes);
+    assert!(jump < 0.02 * strength, "{jump} of {strength} m/s²");
+}
+
+#[test]
+fn a_wind_that_turns_after_an_hour_turns_as_gently_as_at_the_start() {
+    let gusts = Gusts { strength: 0.4, turbulence: 0.2, ..CALM };
+    let roughness = |start: f32| {
+        let mut source = WindSource { gusts, ..wind(Vec3A::new(4.0, 4.0, 0.0)) };
+        source.advance(start);
+        let push = |i: i32| {
+            source.velocity = Vec3A::from(Quat::from_rotation_y(0.005 * i as f32) * Vec3::new(4.0, 4.0, 0.0));
+            source.advance(1.0 / 60.0);
+            let mut bed = sheet(1.0, 0.0);
+            bed.winds = vec![source];
+            bed.step(1e-4);
+            bed.particles.velocity[12] / 1e-4
+        };
+        largest_jump((0..120).map(push).collect())
+    };
+    let (early, late) = (roughness(1.0), roughness(3600.0));
+    assert!(late < 2.0 * early, "{late} after an hour, {early} at the start");
 }

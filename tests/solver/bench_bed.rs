@@ -30,7 +30,6 @@ pub struct Bed {
     pub max_substeps: u32,
     pub gravity: Vec3A,
     pub fluid_density: f32,
-    pub time: f32,
     pub scratch: Scratch,
 }
 
@@ -58,7 +57,6 @@ impl Bed {
             max_substeps: 4096,
             gravity: Vec3A::NEG_Y * GRAVITY,
             fluid_density: 1.225,
-            time: 0.0,
             scratch: Scratch::default(),
         }
     }
@@ -80,7 +78,7 @@ impl Bed {
 
     /// One step of `dt` seconds.
     pub fn step(&mut self, dt: f32) -> StepReport {
-        self.time += dt;
+        self.winds.iter_mut().for_each(|wind| wind.advance(dt));
         let ctx = StepContext {
             dt,
             method: self.method,
@@ -94,7 +92,6 @@ impl Bed {
             obstacles: &self.obstacles,
             fluid_density: self.fluid_density,
             winds: &self.winds,
-            time: self.time,
         };
         step(&mut self.particles, &self.topology, &ctx, &mut self.scratch)
     }

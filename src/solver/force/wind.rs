@@ -10,7 +10,7 @@
 //! Quadratic drag on a plate, with the lift perpendicular to the wind as in Wilson et al., "Simulating wind effects
 //! on cloth and hair in Disney's Frozen" (2014).
 
-use bevy::math::{Isometry3d, Vec3A};
+use bevy::math::{DVec3, Isometry3d, Vec3A};
 
 use crate::solver::{Particles, Scratch, StepContext, Topology};
 
@@ -88,6 +88,19 @@ pub struct WindSource {
     pub region: WindRegion,
     /// The cloth's origin in the world, m: noise belongs to the world, not to the cloth.
     pub origin: Vec3A,
+    /// How far its air has come since it began to blow, m: what carries the eddies.
+    pub travelled: DVec3,
+    /// How many gusts have come since it began to blow.
+    pub gusts_passed: f64,
+}
+
+impl WindSource {
+    /// Lets the air move on for `dt` seconds. Summed up step by step, so that a change of wind now moves nothing that
+    /// has come before.
+    pub fn advance(&mut self, dt: f32) {
+        self.travelled += (self.velocity * dt).as_dvec3();
+        self.gusts_passed += f64::from(dt / self.gusts.period.max(1e-3));
+    }
 }
 
 /// Writes the velocity of the air at each particle into the scratch, once a step.
@@ -97,7 +110,7 @@ pub fn sample_air(particles: &Particles, ctx: &StepContext, scratch: &mut Scratc
         return;
     }
     for wind in ctx.winds {
-        let field = gusts::Field::sample(wind, &particles.position, ctx.time);
+        let field = gusts::Field::sample(wind, &particles.position);
         for (air, &place) in scratch.air_velocity.iter_mut().zip(&particles.position) {
             let weight = wind.region.weight(place);
             if weight > 0.0 {

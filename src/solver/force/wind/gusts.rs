@@ -4,13 +4,16 @@
 //! with the mean wind, gives noise in time as well. It is sampled on a coarse lattice around the cloth, because it
 //! changes little over less than its length scale, and interpolated in between.
 
-use bevy::math::{UVec3, Vec3A};
+use bevy::math::{UVec3, Vec3, Vec3A};
 use fastnoise_lite::{FastNoiseLite, NoiseType};
 
 use super::WindSource;
 
-/// Most samples of a lattice along each axis.
-const MOST_SAMPLES: u32 = 5;
+/// Most samples of a lattice along each axis. Where a cloth is larger, the lattice is coarser, and so are its eddies.
+const MOST_SAMPLES: u32 = 8;
+
+/// Samples along the size of an eddy.
+const SAMPLES_PER_EDDY: f32 = 2.0;
 
 /// How a wind differs from its mean, in space and time. The same seed gives the same wind on every run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,22 +31,25 @@ pub struct Gusts {
 }
 
 /// Air velocity around one cloth, m/s.
+///
+/// The samples stand still in the world while the cloth moves among them, so what it feels has no jumps.
 pub(super) struct Field {
+    /// Place of the first sample, m, relative to the cloth's origin.
     corner: Vec3A,
-    /// Lattice cells per metre along each axis.
-    scale: Vec3A,
+    /// Samples per metre; zero where one sample stands for all.
+    scale: f32,
     samples: UVec3,
     velocity: [Vec3A; (MOST_SAMPLES * MOST_SAMPLES * MOST_SAMPLES) as usize],
 }
 
 impl Field {
-    /// Samples `wind` over the box around `position` at `time` seconds.
-    pub fn sample(wind: &WindSource, position: &[Vec3A], time: f32) -> Self {
+    /// Samples `wind` over the box around `position`.
+    pub fn sample(wind: &WindSource, position: &[Vec3A]) -> Self {
         let mut field = Self::around(wind, position);
-        let noise = Noise::new(wind, time);
+        let spacing = if field.scale > 0.0 { 1.0 / field.scale } else { 0.0 };
+        let noise = Noise::new(wind);
         for index in 0..field.samples.element_product() {
-            let cell = field.cell(index);
-            let point = field.corner + cell.as_vec3a() / field.scale.max(Vec3A::splat(1e-6));
+            let point = field.corner + field.cell(index).as_vec3a() * spacing;
             field.velocity[index as usize] = noise.velocity(point);
         }
         field
@@ -51,21 +57,25 @@ impl Field {
 
     /// A lattice that is fine enough for the eddies, with a single sample where the wind is the same everywhere.
     fn around(wind: &WindSource, position: &[Vec3A]) -> Self {
-        let low = position.iter().fold(Vec3A::INFINITY, |a, &b| a.min(b));
-        let high = position.iter().fold(Vec3A::NEG_INFINITY, |a, &b| a.max(b));
-        let steady = wind.gusts.strength == 0.0 && wind.gusts.turbulence == 0.0;
-        let cells = if steady {
-            Vec3A::ZERO
-        } else {
-            let wanted = ((high - low) * 2.0 / wind.gusts.eddy_size.max(1e-3)).ceil();
-            wanted.clamp(Vec3A::ONE, Vec3A::splat((MOST_SAMPLES - 1) as f32))
-        };
-        Self {
-            corner: low,
-            scale: cells / (high - low).max(Vec3A::splat(1e-6)),
-            samples: cells.as_uvec3() + 1,
-            velocity: [Vec3A::ZERO; _],
+        let velocity = [Vec3A::ZERO; _];
+        let everywhere_the_same = Self { corner: Vec3A::ZERO, scale: 0.0, samples: UVec3::ONE, velocity };
+        if wind.gusts.strength == 0.0 && wind.gusts.turbulence == 0.0 {
+            return everywhere_the_same;
         }
+        let low = wind.origin + position.iter().fold(Vec3A::INFINITY, |a, &b| a.min(b));
+        let high = wind.origin + position.iter().fold(Vec3A::NEG_INFINITY, |a, &b| a.max(b));
+        let mut spacing = wind.gusts.eddy_size.max(1e-3) / SAMPLES_PER_EDDY;
+        while spacing.is_finite() {
+            let (first, last) = ((low / spacing).floor(), (high / spacing).ceil());
+            let most = (last - first).max_element();
+            if most < MOST_SAMPLES as f32 {
+                let samples = (last - first).as_uvec3() + 1;
+                return Self { corner: first * spacing - wind.origin, scale: 1.0 / spacing, samples, velocity };
+            }
+            // By whole octaves, so that the samples of the coarser lattice are among those of the finer.
+            spacing *= 2.0;
+        }
+        everywhere_the_same
     }
 
     fn cell(&self, index: u32) -> UVec3 {
@@ -89,39 +99,38 @@ impl Field {
     }
 }
 
-/// Evaluates one wind at one time.
+/// Evaluates one wind.
 struct Noise<'a> {
     wind: &'a WindSource,
     speed: f32,
-    /// How far the air has travelled, m.
-    travelled: Vec3A,
-    time: f32,
+    direction: Vec3A,
     noise: FastNoiseLite,
 }
 
 impl<'a> Noise<'a> {
-    fn new(wind: &'a WindSource, time: f32) -> Self {
+    fn new(wind: &'a WindSource) -> Self {
         let mut noise = FastNoiseLite::with_seed(wind.gusts.seed as i32);
         noise.set_noise_type(Some(NoiseType::OpenSimplex2));
         noise.set_frequency(Some(1.0));
-        Self { wind, speed: wind.velocity.length(), travelled: wind.velocity * time, time, noise }
+        let (direction, speed) = (wind.velocity.normalize_or_zero(), wind.velocity.length());
+        Self { wind, speed, direction, noise }
     }
 
     fn velocity(&self, point: Vec3A) -> Vec3A {
-        let gusts = &self.wind.gusts;
-        let material_point = self.wind.origin + point - self.travelled;
+        let WindSource { gusts, travelled, gusts_passed, .. } = self.wind;
+        let place = self.wind.origin + point;
         let mut velocity = self.wind.velocity;
         if gusts.strength > 0.0 {
             // A gust is a front that comes with the wind, one period of travel apart from the next.
-            let front = material_point.dot(self.wind.velocity.normalize_or_zero());
-            let phase = front / (self.speed * gusts.period).max(1e-6);
-            velocity *= 1.0 + gusts.strength * self.noise.get_noise_2d(phase, 0.5);
+            let apart = (self.speed * gusts.period).max(1e-6);
+            let front = f64::from(place.dot(self.direction) / apart) - gusts_passed;
+            velocity *= 1.0 + gusts.strength * self.noise.get_noise_2d(front as f32, 0.5);
         }
         if gusts.turbulence > 0.0 {
+            let eddies = (place.as_dvec3() - travelled) / f64::from(gusts.eddy_size.max(1e-3));
             // The slow drift along the third axis lets eddies change as they travel.
-            let p = material_point / gusts.eddy_size.max(1e-3);
-            let drift = self.time / gusts.period.max(1e-3);
-            let eddy = |shift: f32| self.noise.get_noise_3d(p.x + shift, p.y, p.z + drift);
+            let p = eddies.as_vec3() + Vec3::Z * *gusts_passed as f32;
+            let eddy = |shift: f32| self.noise.get_noise_3d(p.x + shift, p.y, p.z);
             velocity +=
                 Vec3A::new(eddy(0.0), eddy(31.7), eddy(67.3)) * (self.speed * gusts.turbulence * NOISE_TO_DEVIATION);
         }
