@@ -147,3 +147,18 @@ fn a_mesh_without_normals_or_uvs_is_cloth_too() {
     assert!(points(drawn(&app, cloth))[3].y < 0.0, "it hangs from the other corner");
     assert_eq!(drawn(&app, cloth).attribute(Mesh::ATTRIBUTE_NORMAL), None);
 }
+
+#[test]
+fn an_unused_vertex_far_away_changes_nothing() {
+    let mut app = headless();
+    let mut mesh = Mesh::from(ClothGrid::new(1.0, 1.0, 5, 5));
+    let mut places = points(&mesh);
+    places.push(Vec3::splat(1e6));
+    let count = places.len();
+    mesh.insert_attribute(Mesh::ATTRIBUTE_POSITION, places);
+    mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0, 0.0, 1.0]; count]);
+    mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, vec![[0.0, 0.0]; count]);
+    let cloth = spawn_cloth(&mut app, mesh, Cloth::default());
+    run(&mut app, 2);
+    assert_eq!(state(&app, cloth).particle_count(), 25);
+}

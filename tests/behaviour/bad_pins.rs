@@ -46,3 +46,30 @@ fn no_indices_are_no_pins() {
     run(&mut app, 1);
     assert_eq!(*get::<ClothStatus>(&app, cloth), ClothStatus::Ready);
 }
+
+#[test]
+fn pins_that_a_command_cannot_add_do_not_stand_in_the_way_of_others() {
+    let mut app = headless();
+    let cloth = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 4, 4), Pins::edge(ClothEdge::Top));
+    run(&mut app, 2);
+    command(&mut app, cloth, |cloth| cloth.pin_cloth(Pins::indices([99])));
+    command(&mut app, cloth, |cloth| cloth.pin_cloth(Pins::indices([12])));
+    command(&mut app, cloth, |cloth| cloth.unpin_cloth(Pins::indices([0])));
+    run(&mut app, 2);
+    assert_eq!(pinned(&app, cloth), [1, 2, 3, 12]);
+    command(&mut app, cloth, |cloth| cloth.reset_cloth());
+    run(&mut app, 2);
+    assert_eq!(*get::<ClothStatus>(&app, cloth), ClothStatus::Ready);
+    assert_eq!(pinned(&app, cloth), [1, 2, 3, 12]);
+}
+
+#[test]
+fn pins_that_come_and_go_do_not_pile_up() {
+    let mut app = headless();
+    let cloth = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 4, 4), Pins::edge(ClothEdge::Top));
+    for _ in 0..20 {
+        command(&mut app, cloth, |cloth| cloth.pin_cloth(Pins::indices([12])));
+        command(&mut app, cloth, |cloth| cloth.unpin_cloth(Pins::indices([12])));
+    }
+    assert_eq!(get::<Pins>(&app, cloth).groups.len(), 2);
+}

@@ -106,3 +106,43 @@ fn a_mesh_that_is_put_in_again_is_drawn_as_cloth_again() {
     assert!(points(drawn(&app, cloth))[0].y < -0.5);
     assert_eq!(app.world().resource::<Heard>().reset, [(cloth, ResetCause::Rebuilt)]);
 }
+
+#[test]
+fn a_cloth_made_before_the_change_is_announced_is_made_from_what_the_mesh_is_by_then() {
+    let mut app = headless();
+    let handle = add_mesh(&mut app, grid(9));
+    let first = app.world_mut().spawn((Mesh3d(handle.clone()), Cloth::default())).id();
+    run(&mut app, 2);
+    *meshes(&mut app).get_mut(&handle).unwrap() = grid(4);
+    let second = app.world_mut().spawn((Mesh3d(handle), Cloth::default())).id();
+    run(&mut app, 3);
+    for cloth in [first, second] {
+        assert_eq!(state(&app, cloth).particle_count(), 16);
+        assert_eq!(points(drawn(&app, cloth)).len(), 16);
+    }
+}
+
+#[test]
+fn a_cloth_given_anothers_drawn_mesh_is_made_from_what_that_was_made_from() {
+    let mut app = headless();
+    let first = spawn_cloth(&mut app, grid(5), Cloth::default());
+    run(&mut app, 20);
+    let handle = get::<Mesh3d>(&app, first).0.clone();
+    let second = app.world_mut().spawn((Mesh3d(handle), Cloth::default())).id();
+    run(&mut app, 20);
+    assert_ne!(get::<Mesh3d>(&app, first), get::<Mesh3d>(&app, second));
+    assert_eq!(state(&app, first).topology().springs, state(&app, second).topology().springs);
+    assert_eq!(app.world().resource::<Heard>().reset, []);
+}
+
+#[test]
+fn a_cloth_removed_and_added_again_is_made_once() {
+    let mut app = headless();
+    let cloth = spawn_cloth(&mut app, grid(5), Cloth::default());
+    run(&mut app, 5);
+    app.world_mut().entity_mut(cloth).remove::<Cloth>();
+    app.world_mut().entity_mut(cloth).insert(Cloth::default());
+    run(&mut app, 5);
+    assert_eq!(app.world().resource::<Heard>().ready, [cloth, cloth]);
+    assert_eq!(app.world().resource::<Heard>().reset, []);
+}

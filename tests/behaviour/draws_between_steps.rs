@@ -123,3 +123,13 @@ fn a_cloth_is_drawn_on_the_entity_that_carries_it_wherever_that_is_by_now() {
     let on_a_pole = farthest_from_carrier(|pole| Pins::edge(ClothEdge::Top).to_entity(pole), false);
     assert!(on_a_pole < 1e-4, "{on_a_pole} m");
 }
+
+#[test]
+fn a_cloth_that_has_come_to_rest_is_not_written() {
+    let mut app = headless();
+    watch(&mut app);
+    let all = Pins::region(Vec3::splat(-1.0), Vec3::splat(1.0));
+    let cloth = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 5, 5), all);
+    run(&mut app, 5);
+    assert_eq!(writes(&mut app, cloth, 20), 0);
+}

@@ -164,3 +164,17 @@ fn pins_hold_through_a_change_of_the_fabric() {
     assert_eq!(place(&app, cloth, CORNER), CORNER_AT);
     assert_eq!(pinned(&app, cloth), [0]);
 }
+
+#[test]
+fn a_target_that_gets_its_transform_later_is_followed_from_then_on() {
+    let mut app = headless();
+    let target = app.world_mut().spawn_empty().id();
+    let cloth = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 4, 4), Pins::edge(ClothEdge::Top).to_entity(target));
+    run(&mut app, 5);
+    app.world_mut().entity_mut(target).insert(Transform::from_xyz(10.0, 0.0, 0.0));
+    run(&mut app, 5);
+    assert_close(place(&app, cloth, 0), Vec3::new(-0.5, 0.5, 0.0), 1e-5);
+    get_mut::<Transform>(&mut app, target).translation.y += 1.0;
+    run(&mut app, 1);
+    assert_close(place(&app, cloth, 0), Vec3::new(-0.5, 1.5, 0.0), 1e-5);
+}
