@@ -7,10 +7,14 @@ use bevy::{
 
 use crate::{
     anchor::Poses,
-    solver::{Obstacle, Shape},
+    solver::{ColliderShape, Obstacle},
 };
 
 /// An obstacle for cloth, moved by its `Transform`.
+///
+/// Move it in `FixedUpdate` or any schedule that runs once a step: its way since the latest step is what pushes the
+/// cloth, and one that moves once a frame comes in jolts where a frame has several steps or none. Removing the component
+/// and inserting it again lets it jump without pushing.
 ///
 /// Made from one of Bevy's primitives: `ClothCollider::from(Sphere::new(0.3))`; also from a `Cuboid`, a `Capsule3d`, a
 /// `Cylinder` and, for a ground, an `InfinitePlane3d`, behind which all is solid. The transform's scale applies; where
@@ -22,7 +26,7 @@ use crate::{
 #[require(Transform, ColliderMemory)]
 pub struct ClothCollider {
     /// Its shape, m, in the entity's own space.
-    pub shape: Shape,
+    pub shape: ColliderShape,
     /// Factor on the friction of the cloth that touches it, no unit. 1 by default, 0 for ice.
     pub friction: f32,
     /// Layers that it is in, one a bit. Cloth meets it where this has a bit in common with the cloth's mask.
@@ -36,39 +40,39 @@ impl Default for ClothCollider {
     }
 }
 
-impl From<Shape> for ClothCollider {
-    fn from(shape: Shape) -> Self {
+impl From<ColliderShape> for ClothCollider {
+    fn from(shape: ColliderShape) -> Self {
         Self { shape, friction: 1.0, layers: 1 }
     }
 }
 
 impl From<Sphere> for ClothCollider {
     fn from(sphere: Sphere) -> Self {
-        Shape::Sphere(sphere).into()
+        ColliderShape::Sphere(sphere).into()
     }
 }
 
 impl From<Cuboid> for ClothCollider {
     fn from(cuboid: Cuboid) -> Self {
-        Shape::Cuboid(cuboid).into()
+        ColliderShape::Cuboid(cuboid).into()
     }
 }
 
 impl From<Capsule3d> for ClothCollider {
     fn from(capsule: Capsule3d) -> Self {
-        Shape::Capsule(capsule).into()
+        ColliderShape::Capsule(capsule).into()
     }
 }
 
 impl From<Cylinder> for ClothCollider {
     fn from(cylinder: Cylinder) -> Self {
-        Shape::Cylinder(cylinder).into()
+        ColliderShape::Cylinder(cylinder).into()
     }
 }
 
 impl From<InfinitePlane3d> for ClothCollider {
     fn from(plane: InfinitePlane3d) -> Self {
-        Shape::HalfSpace(plane).into()
+        ColliderShape::HalfSpace(plane).into()
     }
 }
 
@@ -79,11 +83,11 @@ impl ClothCollider {
         self
     }
 
-    /// Shape and world pose under a transform. None where nothing solid is left.
-    fn placed(&self, pose: Affine3A) -> Option<(Shape, Isometry3d)> {
+    /// ColliderShape and world pose under a transform. None where nothing solid is left.
+    fn placed(&self, pose: Affine3A) -> Option<(ColliderShape, Isometry3d)> {
         let (scale, rotation, translation) = pose.to_scale_rotation_translation();
         let mut shape = scaled(self.shape, scale.abs())?;
-        if let Shape::HalfSpace(plane) = &mut shape {
+        if let ColliderShape::HalfSpace(plane) = &mut shape {
             // A plane's normal goes by the inverse transpose: exact under any scale, mirrored or not.
             let world = pose.matrix3.inverse().transpose() * Vec3A::from(Vec3::from(plane.normal));
             plane.normal = Dir3::new(rotation.inverse() * Vec3::from(world)).ok()?;
@@ -95,29 +99,29 @@ impl ClothCollider {
 }
 
 /// A shape under a scale of no negative factors; none where it has no size or none that is finite.
-fn scaled(shape: Shape, scale: Vec3) -> Option<Shape> {
+fn scaled(shape: ColliderShape, scale: Vec3) -> Option<ColliderShape> {
     let around = scale.max_element();
     let across = scale.x.max(scale.z);
     let solid = |sizes: &[f32]| sizes.iter().all(|&size| size.is_finite() && size > 0.0);
     let (shape, is_solid) = match shape {
-        Shape::Sphere(Sphere { radius }) => {
+        ColliderShape::Sphere(Sphere { radius }) => {
             let radius = radius * around;
-            (Shape::Sphere(Sphere { radius }), solid(&[radius]))
+            (ColliderShape::Sphere(Sphere { radius }), solid(&[radius]))
         }
-        Shape::Cuboid(Cuboid { half_size }) => {
+        ColliderShape::Cuboid(Cuboid { half_size }) => {
             let half_size = half_size * scale;
-            (Shape::Cuboid(Cuboid { half_size }), solid(&half_size.to_array()))
+            (ColliderShape::Cuboid(Cuboid { half_size }), solid(&half_size.to_array()))
         }
-        Shape::Capsule(Capsule3d { radius, half_length }) => {
+        ColliderShape::Capsule(Capsule3d { radius, half_length }) => {
             let (radius, half_length) = (radius * across, half_length * scale.y);
             let is_solid = solid(&[radius]) && half_length.is_finite() && half_length >= 0.0;
-            (Shape::Capsule(Capsule3d { radius, half_length }), is_solid)
+            (ColliderShape::Capsule(Capsule3d { radius, half_length }), is_solid)
         }
-        Shape::Cylinder(Cylinder { radius, half_height }) => {
+        ColliderShape::Cylinder(Cylinder { radius, half_height }) => {
             let (radius, half_height) = (radius * across, half_height * scale.y);
-            (Shape::Cylinder(Cylinder { radius, half_height }), solid(&[radius, half_height]))
+            (ColliderShape::Cylinder(Cylinder { radius, half_height }), solid(&[radius, half_height]))
         }
-        Shape::HalfSpace(_) => (shape, solid(&[around])),
+        ColliderShape::HalfSpace(_) => (shape, solid(&[around])),
     };
     is_solid.then_some(shape)
 }

@@ -70,6 +70,7 @@ pub mod prelude {
         grid::ClothGrid,
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
+        solver::ColliderShape,
         state::ClothState,
         wind::{Wind, WindShape},
     };

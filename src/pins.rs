@@ -27,6 +27,10 @@ pub const ATTRIBUTE_PIN: MeshVertexAttribute = MeshVertexAttribute::new("Pin", 0
 /// newly pinned is held where it is at that moment, and from then on follows its target's movement and rotation.
 /// Vertices at one place are one particle: pinning one of them pins all.
 ///
+/// Targets move the cloth best in `FixedUpdate` or any schedule that runs once a step; moved once a frame they pull in
+/// jolts where a frame has several steps or none. What is drawn stays on a target that all pins share, whenever that
+/// moves.
+///
 /// ```
 /// # use bevy_drape::prelude::*;
 /// # use bevy::prelude::*;

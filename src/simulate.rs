@@ -66,13 +66,13 @@ pub(crate) fn for_each<D, F>(
 
 fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Obstacles, winds: &Winds) {
     let Some(material) = state.material else { return };
-    state.work.recovered = false;
+    state.is_taken_back = false;
     // Paused: nothing is new to draw, and what pushes the cloth is kept until time goes on.
     if time.delta_secs() <= 0.0 {
         return;
     }
     let Cloth { solver, substeps, max_substeps, gravity_scale, .. } = state.settings;
-    let Work { anchors, obstacles: near, winds: felt, scratch, recovered } = &mut state.work;
+    let Work { anchors, obstacles: near, winds: felt, scratch } = &mut state.work;
     obstacles.around(state.origin, state.settings.collision_mask, near);
     winds.around(state.origin, felt);
     let ctx = StepContext {
@@ -97,8 +97,8 @@ fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Ob
     if !(was_still && state.is_still) {
         state.steps += 1;
     }
-    *recovered = !state.particles.is_finite();
-    if *recovered {
+    state.is_taken_back = !state.particles.is_finite();
+    if state.is_taken_back {
         state.particles.position.clone_from(&state.step_start);
         state.particles.velocity.fill(Vec3A::ZERO);
     }
@@ -110,7 +110,7 @@ pub(crate) fn report_steps(mut commands: Commands, mut cloths: Query<(Entity, &C
         if *status != ClothStatus::Ready {
             continue;
         }
-        if state.work.recovered {
+        if state.is_taken_back {
             commands.trigger(ClothReset { entity, cause: ResetCause::NotFinite });
             if !state.said.not_finite {
                 state.said.not_finite = true;

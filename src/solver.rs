@@ -18,7 +18,7 @@ pub mod explicit;
 pub mod force;
 
 pub use constraint::tether::Tether;
-pub use contact::{Obstacle, Shape};
+pub use contact::{ColliderShape, Obstacle};
 pub use context::{Anchor, Method, StepContext, StepReport};
 pub use force::wind::{WindRegion, WindSource};
 pub use material::{Material, SpringConstants};

@@ -22,7 +22,8 @@ use crate::{
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[component(clone_behavior = Ignore)]
 #[reflect(opaque)]
-#[reflect(Component, Default, Debug, Clone)]
+// Not as a component: scenes leave the running state out, and a cloth that is loaded makes its own.
+#[reflect(Default, Debug, Clone)]
 pub struct ClothState {
     /// State of the solver, relative to `origin`.
     pub(crate) particles: Particles,
@@ -52,6 +53,8 @@ pub struct ClothState {
     pub(crate) is_still: bool,
     /// What the latest step did.
     pub(crate) report: Option<StepReport>,
+    /// The latest step ended in a state that wasn't finite, and was taken back.
+    pub(crate) is_taken_back: bool,
     /// What has been asked for and is done at the next occasion.
     pub(crate) requests: Requests,
     /// What has been said once and needn't be said again.
@@ -87,8 +90,6 @@ pub(crate) struct Work {
     pub obstacles: Vec<Obstacle>,
     pub winds: Vec<WindSource>,
     pub scratch: Scratch,
-    /// The latest step ended in a non-finite state and was taken back.
-    pub recovered: bool,
 }
 
 impl ClothState {
@@ -169,7 +170,9 @@ impl ClothState {
         self.report
     }
 
-    /// Pushes a particle with `force` (N) during the next step. Forces add up. One that isn't finite is ignored.
+    /// Pushes a particle with `force` (N) during the next step. Forces add up until then, so push once a step: in the
+    /// plugin's schedule, before [`ClothSystems::Simulate`](crate::prelude::ClothSystems::Simulate), or in any fixed one
+    /// before it. A force that isn't finite is ignored.
     pub fn add_force(&mut self, particle: usize, force: Vec3) {
         if let Some(total) = self.particles.force.get_mut(particle)
             && force.is_finite()

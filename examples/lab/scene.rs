@@ -7,7 +7,9 @@ use bevy::{
 use bevy_drape::{
     build,
     prelude::ClothGrid,
-    solver::{Anchor, Material, Method, Obstacle, Particles, Shape, SpringConstants, StepContext, Tether, Topology},
+    solver::{
+        Anchor, ColliderShape, Material, Method, Obstacle, Particles, SpringConstants, StepContext, Tether, Topology,
+    },
 };
 
 use super::{Options, PinnedPart, Solver, Switch};
@@ -81,8 +83,8 @@ pub fn drape(options: &Options) -> Scene {
         Obstacle { shape, start: pose, end: pose, friction: 1.0 }
     };
     scene.obstacles = vec![
-        obstacle(Shape::Sphere(Sphere::new(0.3)), 0.15),
-        obstacle(Shape::HalfSpace(InfinitePlane3d::default()), 0.0),
+        obstacle(ColliderShape::Sphere(Sphere::new(0.3)), 0.15),
+        obstacle(ColliderShape::HalfSpace(InfinitePlane3d::default()), 0.0),
     ];
     scene
 }

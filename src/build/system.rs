@@ -16,7 +16,7 @@ use crate::{
     cloth::{Cloth, ClothFailed, ClothReady, ClothReset, ClothStatus, ResetCause},
     draw::{
         binding::Binding,
-        mesh::{ClothMesh, Shape},
+        mesh::{ClothMesh, Drawn},
     },
     error::ClothError,
     fabric::Fabric,
@@ -222,7 +222,7 @@ impl CandidateItem<'_, '_> {
         if self.mesh.0 != drawn {
             self.mesh.0 = drawn.clone();
         }
-        let shape = Shape::new(built.positions);
+        let shape = Drawn::new(built.positions);
         let own_mesh = ClothMesh { source, drawn, binding: built.binding, shape };
         commands.entity(entity).try_insert(own_mesh);
         match cause {

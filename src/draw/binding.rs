@@ -6,7 +6,7 @@ use bevy::{platform::collections::HashMap, prelude::*};
 
 use crate::build::{source::SourceMesh, weld::Welded};
 
-/// Normals within this of each other, per component, are one: a smooth surface rather than a hard edge.
+/// Normals that round to the same multiples of this are one: a smooth surface rather than a hard edge.
 const SAME_NORMAL: f32 = 0.02;
 
 /// From particles to the vertices of a mesh.

@@ -22,12 +22,12 @@ pub(crate) struct ClothMesh {
     /// From particles to vertices.
     pub binding: Arc<Binding>,
     /// What the vertices are to become.
-    pub shape: Shape,
+    pub shape: Drawn,
 }
 
 /// Vertex data of a deformed mesh, in its entity's own space.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Shape {
+pub(crate) struct Drawn {
     /// Position of each vertex. Those in no triangle keep the place that they have here.
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
@@ -81,7 +81,7 @@ pub(crate) fn release(mesh: &Handle<Mesh>, meshes: &mut Assets<Mesh>) {
     }
 }
 
-impl Shape {
+impl Drawn {
     /// The vertices of a mesh before the first step.
     pub fn new(positions: Vec<[f32; 3]>) -> Self {
         Self { positions, ..default() }

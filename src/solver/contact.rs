@@ -1,6 +1,7 @@
 //! Contact: particles stay outside of obstacles, slide on them with friction, and let go without sticking.
 //!
-//! Particles are projected once a substep, as its last act, so that none ends a step inside an obstacle. Friction is
+//! Particles are projected once a substep, as its last act, so that none ends a step inside an obstacle; where obstacles
+//! overlap or pinch the cloth, the last one has its way. Friction is
 //! Coulomb's at the level of positions: the way along the surface is cut by at most `friction` times the way that the
 //! contact pushed (Müller et al., "Position Based Dynamics", 2007, section 3.6, with the normal push in place of a
 //! damping constant). There is no restitution.
@@ -13,13 +14,13 @@ use super::{Material, Particles};
 
 pub mod shape;
 
-pub use shape::{Shape, Surface};
+pub use shape::{ColliderShape, Surface};
 
 /// A solid that cloth can't enter, on its way over one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle {
     /// Its shape.
-    pub shape: Shape,
+    pub shape: ColliderShape,
     /// Where it is when the step starts, m, relative to the cloth's origin.
     pub start: Isometry3d,
     /// Where it is when the step ends.
@@ -65,7 +66,7 @@ pub fn project(particles: &mut Particles, obstacles: &[Obstacle], material: &Mat
 
 /// An obstacle's shape within one substep.
 struct MovingShape {
-    shape: Shape,
+    shape: ColliderShape,
     thickness: f32,
     start: Isometry3d,
     end: Isometry3d,

@@ -62,6 +62,6 @@ pub struct StepReport {
     /// Share of the asked stiffness and damping that was used, 0..=1. Below one when [`Method::Explicit`] would have
     /// needed more than [`StepContext::max_substeps`] substeps for the whole.
     pub stiffness_scale: f32,
-    /// Particles in touch with an obstacle in the last substep.
+    /// Contacts in the last substep: pairs of a particle and an obstacle.
     pub contacts: u32,
 }

@@ -1,7 +1,7 @@
 //! What surrounds a cloth may be nonsense: the cloth stays finite and does what is left to do.
 
 use bevy::{math::primitives::InfinitePlane3d, prelude::*};
-use bevy_drape::{prelude::*, solver::Shape};
+use bevy_drape::prelude::*;
 
 use crate::common::*;
 
@@ -134,7 +134,8 @@ fn steps_of_ten_seconds_are_survived() {
     let mut app = headless();
     app.world_mut().resource_mut::<Time<Virtual>>().set_max_delta(core::time::Duration::from_secs(100));
     set_rates(&mut app, 10.0, 10.0);
-    app.world_mut().spawn((ClothCollider::from(Shape::Sphere(Sphere::new(0.3))), Transform::from_xyz(0.0, -0.4, 0.0)));
+    app.world_mut()
+        .spawn((ClothCollider::from(ColliderShape::Sphere(Sphere::new(0.3))), Transform::from_xyz(0.0, -0.4, 0.0)));
     let cloth = spawn_cloth(&mut app, GRID, Pins::corners());
     run(&mut app, 1);
     // A tenth of a second of free fall at most, not ten.

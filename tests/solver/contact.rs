@@ -6,13 +6,13 @@ use bevy::{
 };
 use bevy_drape::{
     prelude::Fabric,
-    solver::{Material, Obstacle, Shape},
+    solver::{ColliderShape, Material, Obstacle},
 };
 use proptest::prelude::*;
 
 use crate::bench_bed::{Bed, GRAVITY, bare};
 
-fn still(shape: Shape, place: Vec3) -> Obstacle {
+fn still(shape: ColliderShape, place: Vec3) -> Obstacle {
     let pose = Isometry3d::from_translation(place);
     Obstacle { shape, start: pose, end: pose, friction: 1.0 }
 }
@@ -38,7 +38,7 @@ fn slid(friction: f32, slope: f32) -> f32 {
         *position = turn * *position;
     }
     let normal = Dir3::new(turn * Vec3::Y).unwrap();
-    bed.obstacles = vec![still(Shape::HalfSpace(InfinitePlane3d { normal }), Vec3::ZERO)];
+    bed.obstacles = vec![still(ColliderShape::HalfSpace(InfinitePlane3d { normal }), Vec3::ZERO)];
     bed.run(2.0);
     bed.centre().length()
 }
@@ -67,8 +67,8 @@ fn a_cloth_on_a_sphere_stays_on_it_outside_of_it_and_comes_to_rest() {
         position.y += 0.75;
     }
     bed.obstacles = vec![
-        still(Shape::Sphere(Sphere::new(0.3)), Vec3::Y * 0.15),
-        still(Shape::HalfSpace(InfinitePlane3d::default()), Vec3::ZERO),
+        still(ColliderShape::Sphere(Sphere::new(0.3)), Vec3::Y * 0.15),
+        still(ColliderShape::HalfSpace(InfinitePlane3d::default()), Vec3::ZERO),
     ];
     for _ in 0..300 {
         bed.step(1.0 / 60.0);
@@ -81,7 +81,7 @@ fn a_cloth_on_a_sphere_stays_on_it_outside_of_it_and_comes_to_rest() {
 #[test]
 fn a_cloth_dropped_flat_does_not_bounce() {
     let mut bed = Bed::lying(6, cotton(0.5, 0.01));
-    bed.obstacles = vec![still(Shape::HalfSpace(InfinitePlane3d::default()), Vec3::NEG_Y * 0.5)];
+    bed.obstacles = vec![still(ColliderShape::HalfSpace(InfinitePlane3d::default()), Vec3::NEG_Y * 0.5)];
     bed.run(0.5);
     for _ in 0..60 {
         bed.step(1.0 / 60.0);
@@ -92,7 +92,7 @@ fn a_cloth_dropped_flat_does_not_bounce() {
 #[test]
 fn a_cloth_is_lifted_off_by_an_upward_push_without_sticking() {
     let mut bed = Bed::lying(6, cotton(0.9, 0.01));
-    bed.obstacles = vec![still(Shape::HalfSpace(InfinitePlane3d::default()), Vec3::ZERO)];
+    bed.obstacles = vec![still(ColliderShape::HalfSpace(InfinitePlane3d::default()), Vec3::ZERO)];
     bed.run(0.5);
     bed.gravity = Vec3A::Y * 2.0;
     let start = bed.centre().y;
@@ -102,7 +102,7 @@ fn a_cloth_is_lifted_off_by_an_upward_push_without_sticking() {
 }
 
 /// A free cloth in the way of an obstacle that comes down at 10 m/s for a fifth of a second.
-fn struck(shape: Shape) -> Bed {
+fn struck(shape: ColliderShape) -> Bed {
     let mut bed = Bed { gravity: Vec3A::ZERO, ..Bed::lying(16, cotton(0.3, 0.005)) };
     for frame in 0..12 {
         let place = |frame: i32| Isometry3d::from_translation(Vec3::Y * (1.0 - frame as f32 * 10.0 / 60.0));
@@ -116,10 +116,10 @@ fn struck(shape: Shape) -> Bed {
 #[test]
 fn an_obstacle_at_ten_metres_a_second_pushes_and_is_not_passed() {
     for shape in [
-        Shape::Sphere(Sphere::new(0.2)),
-        Shape::Capsule(Capsule3d::new(0.2, 0.4)),
-        Shape::Cylinder(Cylinder::new(0.8, 0.005)),
-        Shape::Cuboid(Cuboid::new(1.5, 0.004, 1.5)),
+        ColliderShape::Sphere(Sphere::new(0.2)),
+        ColliderShape::Capsule(Capsule3d::new(0.2, 0.4)),
+        ColliderShape::Cylinder(Cylinder::new(0.8, 0.005)),
+        ColliderShape::Cuboid(Cuboid::new(1.5, 0.004, 1.5)),
     ] {
         let bed = struck(shape);
         let bottom = -1.0 - shape_reach(shape);
@@ -129,7 +129,7 @@ fn an_obstacle_at_ten_metres_a_second_pushes_and_is_not_passed() {
 }
 
 /// How far a shape reaches down from its centre, m.
-fn shape_reach(shape: Shape) -> f32 {
+fn shape_reach(shape: ColliderShape) -> f32 {
     -shape.surface(Vec3A::NEG_Y * 10.0).distance + 10.0
 }
 
@@ -139,7 +139,7 @@ fn a_turning_table_takes_a_cloth_along() {
     let speed = 1.0;
     for frame in 0..60 {
         let pose = |frame: i32| Isometry3d::from_rotation(Quat::from_rotation_y(speed * frame as f32 / 60.0));
-        let table = Shape::Cylinder(Cylinder::new(2.0, 0.2));
+        let table = ColliderShape::Cylinder(Cylinder::new(2.0, 0.2));
         let lowered = |frame: i32| Isometry3d::new(Vec3::NEG_Y * 0.1, pose(frame).rotation);
         bed.obstacles = vec![Obstacle { shape: table, start: lowered(frame), end: lowered(frame + 1), friction: 1.0 }];
         bed.step(1.0 / 60.0);
@@ -152,7 +152,7 @@ fn a_turning_table_takes_a_cloth_along() {
 #[test]
 fn a_cloth_that_starts_inside_comes_out_without_being_thrown() {
     let mut bed = Bed { gravity: Vec3A::ZERO, ..Bed::lying(16, cotton(0.5, 0.0)) };
-    bed.obstacles = vec![still(Shape::Sphere(Sphere::new(0.2)), Vec3::Y * 0.05)];
+    bed.obstacles = vec![still(ColliderShape::Sphere(Sphere::new(0.2)), Vec3::Y * 0.05)];
     bed.run(1.0);
     assert!(depth(&bed) < 1e-5);
     assert!(bed.fastest() < 5.0, "{} m/s", bed.fastest());
@@ -171,11 +171,11 @@ proptest! {
         friction in 0.0_f32..1.0,
     ) {
         let shape = match kind {
-            0 => Shape::Sphere(Sphere::new(size[0])),
-            1 => Shape::Cuboid(Cuboid::new(size[0], size[1], size[2])),
-            2 => Shape::Capsule(Capsule3d::new(size[0], size[1])),
-            3 => Shape::Cylinder(Cylinder::new(size[0], size[1])),
-            _ => Shape::HalfSpace(InfinitePlane3d::default()),
+            0 => ColliderShape::Sphere(Sphere::new(size[0])),
+            1 => ColliderShape::Cuboid(Cuboid::new(size[0], size[1], size[2])),
+            2 => ColliderShape::Capsule(Capsule3d::new(size[0], size[1])),
+            3 => ColliderShape::Cylinder(Cylinder::new(size[0], size[1])),
+            _ => ColliderShape::HalfSpace(InfinitePlane3d::default()),
         };
         let mut bed = Bed::lying(12, cotton(friction, 0.003));
         for frame in 0..20 {

@@ -4,7 +4,7 @@ use bevy::{math::Vec3A, prelude::*};
 use bevy_drape::{
     build,
     prelude::Fabric,
-    solver::{Method, Obstacle, Shape},
+    solver::{ColliderShape, Method, Obstacle},
 };
 
 use crate::bench_bed::{Bed, bits};
@@ -13,7 +13,8 @@ fn scene(method: Method) -> Bed {
     let mut bed = Bed { method, ..Bed::lying(16, Fabric::default().material().unwrap()).pinned([0, 15]) };
     bed.tethers = build::tethers(&bed.topology, &[0, 15]);
     let pose = bevy::math::Isometry3d::from_translation(Vec3::new(0.0, -0.5, -0.3));
-    bed.obstacles = vec![Obstacle { shape: Shape::Sphere(Sphere::new(0.2)), start: pose, end: pose, friction: 1.0 }];
+    bed.obstacles =
+        vec![Obstacle { shape: ColliderShape::Sphere(Sphere::new(0.2)), start: pose, end: pose, friction: 1.0 }];
     bed.particles.force[200] = Vec3A::new(0.01, 0.02, 0.0);
     bed
 }

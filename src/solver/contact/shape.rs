@@ -14,7 +14,7 @@ use bevy::{
 /// A solid.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Debug, Clone, PartialEq)]
-pub enum Shape {
+pub enum ColliderShape {
     /// A ball.
     Sphere(Sphere),
     /// A box.
@@ -36,7 +36,7 @@ pub struct Surface {
     pub normal: Vec3A,
 }
 
-impl Shape {
+impl ColliderShape {
     /// The surface as seen from `point` (m, in the solid's own frame).
     pub fn surface(&self, point: Vec3A) -> Surface {
         match self {
@@ -101,13 +101,13 @@ mod tests {
     use super::*;
     use bevy::math::Dir3;
 
-    fn all_shapes() -> [Shape; 5] {
+    fn all_shapes() -> [ColliderShape; 5] {
         [
-            Shape::Sphere(Sphere::new(0.4)),
-            Shape::Cuboid(Cuboid::new(0.6, 1.0, 0.4)),
-            Shape::Capsule(Capsule3d::new(0.2, 0.8)),
-            Shape::Cylinder(Cylinder::new(0.3, 0.9)),
-            Shape::HalfSpace(InfinitePlane3d { normal: Dir3::new_unchecked(Vec3::new(0.6, 0.8, 0.0)) }),
+            ColliderShape::Sphere(Sphere::new(0.4)),
+            ColliderShape::Cuboid(Cuboid::new(0.6, 1.0, 0.4)),
+            ColliderShape::Capsule(Capsule3d::new(0.2, 0.8)),
+            ColliderShape::Cylinder(Cylinder::new(0.3, 0.9)),
+            ColliderShape::HalfSpace(InfinitePlane3d { normal: Dir3::new_unchecked(Vec3::new(0.6, 0.8, 0.0)) }),
         ]
     }
 
