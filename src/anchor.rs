@@ -1,4 +1,4 @@
-//! Pinned particles follow their targets; a cloth follows its entity's teleports and stays near its origin.
+//! Pinned particles follow their targets.
 
 use bevy::{
     math::{Affine3A, Vec3A},
@@ -9,13 +9,11 @@ use crate::{
     build,
     cloth::ClothStatus,
     draw::{carrier::Carrier, mesh::ClothMesh},
+    origin,
     pins::{PinTarget, Pins, targets_by_particle},
     solver::Anchor,
     state::ClothState,
 };
-
-/// Positions farther than this from the cloth's origin, m, move the origin: an `f32` then still resolves 0.02 mm.
-const FARTHEST: f32 = 256.0;
 
 /// A fixed particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,12 +94,12 @@ pub(crate) fn follow_targets(mut cloths: Query<(Entity, &mut ClothState, &ClothS
         if let Ok(pose) = poses.compute_global_transform(entity) {
             let pose = pose.affine();
             if core::mem::take(&mut state.requests.teleport) {
-                teleport(state, pose);
+                origin::teleport(state, pose);
                 state.carrier = None;
             }
             state.pose = pose;
         }
-        stay_near_origin(state);
+        origin::stay_near(state);
         plan_anchors(state, entity, &poses);
         state.carrier = carrier(state, entity, &poses);
     }
@@ -161,47 +159,4 @@ fn target_pose(target: PinTarget, cloth: Entity, poses: &Poses) -> Option<Affine
 /// Whether a transform keeps volume: all of its scales are finite and not zero.
 pub(crate) fn is_invertible(pose: &Affine3A) -> bool {
     pose.is_finite() && pose.matrix3.determinant().is_normal() && pose.inverse().is_finite()
-}
-
-/// Carries the cloth rigidly from the pose of its latest step to `pose`, velocities and world pins with it.
-fn teleport(state: &mut ClothState, pose: Affine3A) {
-    if !is_invertible(&state.pose) || !is_invertible(&pose) {
-        return;
-    }
-    // Without the scale, which the springs' lengths don't follow.
-    let turn = Affine3A { matrix3: pose.matrix3 * state.pose.matrix3.inverse(), translation: Vec3A::ZERO };
-    let turn = turn.to_scale_rotation_translation().1;
-    let (old_place, old_origin) = (state.pose.translation, Vec3A::from(state.origin));
-    let carry = |p: &mut Vec3A| *p = turn * (*p + (old_origin - old_place));
-    state.origin = pose.translation.into();
-    for positions in [&mut state.particles.position, &mut state.step_start] {
-        positions.iter_mut().for_each(carry);
-    }
-    for velocity in &mut state.particles.velocity {
-        *velocity = turn * *velocity;
-    }
-    for offset in world_places(&mut state.pins) {
-        carry(offset);
-    }
-}
-
-/// Moves the origin after a cloth that has gone far from it.
-fn stay_near_origin(state: &mut ClothState) {
-    let Some(&place) = state.particles.position.first() else { return };
-    if place.abs().max_element() < FARTHEST {
-        return;
-    }
-    let shift = place.round();
-    state.origin += Vec3::from(shift);
-    for positions in [&mut state.particles.position, &mut state.step_start] {
-        positions.iter_mut().for_each(|p| *p -= shift);
-    }
-    for offset in world_places(&mut state.pins) {
-        *offset -= shift;
-    }
-}
-
-/// Places of the pins to the world, which are relative to the cloth's origin.
-fn world_places(pins: &mut [HeldPin]) -> impl Iterator<Item = &mut Vec3A> {
-    pins.iter_mut().filter(|pin| pin.target == PinTarget::World).filter_map(|pin| pin.offset.as_mut())
 }

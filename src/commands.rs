@@ -3,13 +3,13 @@
 use bevy::{ecs::system::EntityCommands, prelude::*};
 
 use crate::{
-    cloth::{Cloth, ClothStatus},
-    draw::mesh::{self, ClothMesh},
+    cloth::ClothStatus,
+    draw::mesh::ClothMesh,
     pins::{PinGroup, PinTarget, Pins, targets_by_particle},
     state::ClothState,
 };
 
-/// Commands for an entity with a [`Cloth`]. On any other entity they do nothing.
+/// Commands for an entity with a [`Cloth`](crate::prelude::Cloth). On any other entity they do nothing.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -83,17 +83,4 @@ fn without_refused(mut pins: Pins, entity: &EntityWorldMut) -> Pins {
         pins.groups.remove(group);
     }
     pins
-}
-
-/// Leaves a plain mesh behind where [`Cloth`] is removed: as it was drawn last, with bounds that are its own again.
-pub(crate) fn on_cloth_removed(
-    removed: On<Remove, Cloth>,
-    mut commands: Commands,
-    cloths: Query<&ClothMesh>,
-    meshes: Option<ResMut<Assets<Mesh>>>,
-) {
-    if let (Ok(cloth), Some(mut meshes)) = (cloths.get(removed.entity), meshes) {
-        mesh::release(&cloth.drawn, &mut meshes);
-    }
-    commands.entity(removed.entity).try_remove::<(ClothMesh, ClothState, ClothStatus)>();
 }

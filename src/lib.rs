@@ -47,6 +47,8 @@ mod pins;
 
 mod anchor;
 mod collider;
+mod origin;
+mod parallel;
 mod settings;
 mod simulate;
 pub mod solver;

@@ -10,7 +10,7 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{anchor, build, cloth, collider, commands, draw, settings, simulate, wind};
+use crate::{anchor, build, cloth, collider, draw, settings, simulate, wind};
 
 /// The stages of a cloth's frame, in their order. Games order their systems around them.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -127,7 +127,7 @@ impl Plugin for ClothPlugin {
                 PostUpdate,
                 (draw::mesh::shape_cloths, draw::mesh::write_meshes).chain().in_set(ClothSystems::Draw),
             )
-            .add_observer(commands::on_cloth_removed)
+            .add_observer(build::system::on_cloth_removed)
             .add_observer(collider::on_collider_removed);
     }
 

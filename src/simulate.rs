@@ -1,18 +1,11 @@
 //! One step of every cloth: what was gathered goes in, the new state comes out.
 
-use bevy::{
-    ecs::{
-        query::{IterQueryData, QueryFilter},
-        system::NonSendMarker,
-    },
-    math::Vec3A,
-    prelude::*,
-    tasks::ComputeTaskPool,
-};
+use bevy::{ecs::system::NonSendMarker, math::Vec3A, prelude::*};
 
 use crate::{
     cloth::{Cloth, ClothGravity, ClothReset, ClothSolver, ClothStatus, ResetCause},
     collider::Obstacles,
+    parallel,
     schedule::ClothRun,
     solver::{self, StepContext},
     state::{ClothState, Work},
@@ -35,33 +28,11 @@ pub(crate) fn step_cloths(
         warn_once!("ClothGravity isn't finite: cloth has no gravity until it is; set it to a finite acceleration");
         Vec3::ZERO
     };
-    for_each(&mut cloths, run.parallel, |(status, mut state)| {
+    parallel::for_each(&mut cloths, run.parallel, |(status, mut state)| {
         if *status == ClothStatus::Ready {
             step_cloth(&mut state, &time, gravity, &obstacles, &winds);
         }
     });
-}
-
-/// Visits all matches of a query, side by side on the task pool where there is one.
-///
-/// A task a match, since a cloth is much work. The calling thread works along with the pool's. Systems that call this
-/// ask for the main thread (`NonSendMarker`), which would only wait otherwise: on two cores that is half of the machine.
-pub(crate) fn for_each<D, F>(
-    query: &mut Query<D, F>,
-    parallel: bool,
-    visit: impl for<'w, 's> Fn(D::Item<'w, 's>) + Send + Sync,
-) where
-    D: IterQueryData,
-    for<'w, 's> D::Item<'w, 's>: Send,
-    F: QueryFilter,
-{
-    let visit = &visit;
-    match ComputeTaskPool::try_get().filter(|_| parallel) {
-        Some(pool) => {
-            pool.scope(|scope| query.iter_mut().for_each(|item| scope.spawn(async move { visit(item) })));
-        }
-        None => query.iter_mut().for_each(visit),
-    }
 }
 
 fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Obstacles, winds: &Winds) {

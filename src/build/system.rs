@@ -16,7 +16,7 @@ use crate::{
     cloth::{Cloth, ClothFailed, ClothReady, ClothReset, ClothStatus, ResetCause},
     draw::{
         binding::Binding,
-        mesh::{ClothMesh, Drawn},
+        mesh::{self, ClothMesh, Drawn},
     },
     error::ClothError,
     fabric::Fabric,
@@ -241,4 +241,17 @@ impl CandidateItem<'_, '_> {
         *self.status = ClothStatus::Failed(error.clone());
         commands.trigger(ClothFailed { entity: self.entity, error });
     }
+}
+
+/// Leaves a plain mesh behind where [`Cloth`] is removed: as it was drawn last, with bounds that are its own again.
+pub(crate) fn on_cloth_removed(
+    removed: On<Remove, Cloth>,
+    mut commands: Commands,
+    cloths: Query<&ClothMesh>,
+    meshes: Option<ResMut<Assets<Mesh>>>,
+) {
+    if let (Ok(cloth), Some(mut meshes)) = (cloths.get(removed.entity), meshes) {
+        mesh::release(&cloth.drawn, &mut meshes);
+    }
+    commands.entity(removed.entity).try_remove::<(ClothMesh, ClothState, ClothStatus)>();
 }

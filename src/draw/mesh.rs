@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use super::{binding::Binding, carrier::Carrier, shading};
-use crate::{anchor::is_invertible, build::weld::NO_PARTICLE, schedule::ClothClock, state::ClothState};
+use crate::{anchor::is_invertible, build::weld::NO_PARTICLE, parallel, schedule::ClothClock, state::ClothState};
 
 /// The meshes of a cloth: the one that it was made from, and its own copy, which is drawn.
 #[derive(Component, Clone, Debug)]
@@ -49,7 +49,7 @@ pub(crate) fn shape_cloths(
     _main_thread: NonSendMarker,
 ) {
     let now = clock.overstep();
-    crate::simulate::for_each(&mut cloths, clock.parallel(), |(state, mut mesh, transform)| {
+    parallel::for_each(&mut cloths, clock.parallel(), |(state, mut mesh, transform)| {
         let ClothMesh { binding, shape, .. } = &mut *mesh;
         // Until the next step does a teleport, the cloth is drawn as if it had been done.
         let pose = if state.requests.teleport { state.pose } else { transform.affine() };
