@@ -1,12 +1,12 @@
 //! What cloth costs in a headless Bevy app, wall time: all that the plugin does, without a renderer.
 
-use std::{
-    io,
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
 
 use bevy::{mesh::MeshPlugin, prelude::*, time::TimeUpdateStrategy};
-use bevy_drape::prelude::*;
+use bevy_drape::{
+    prelude::*,
+    solver::{self, Scratch},
+};
 use serde_json::{Value, json};
 
 use super::{Options, PinnedPart, Solver, measure, scene};
@@ -14,35 +14,54 @@ use super::{Options, PinnedPart, Solver, measure, scene};
 /// Frames before the measurement: pools and buffers fill.
 const WARM_UP: u32 = 30;
 
-/// The hanging cloth in an app, against the same app without it and against its solver alone.
-pub fn one_cloth(options: &Options) -> io::Result<Value> {
+/// The hanging cloth in an app, against the same app without it and against its solver alone. The three take turns, so
+/// that whatever else the machine does meets them alike.
+pub fn one_cloth(options: &Options) -> Value {
+    let plugin = ClothPlugin::default().single_threaded();
+    let mut empty = headless(plugin);
+    let mut app = headless(plugin);
+    spawn_hanging(&mut app, options);
+    let mut scene = scene::hang(options, PinnedPart::Corners);
+    let mut scratch = Scratch::default();
+    let mut step = || {
+        let mut particles = core::mem::take(&mut scene.particles);
+        solver::step(&mut particles, &scene.topology, &scene.context(options), &mut scratch);
+        scene.particles = particles;
+    };
+    let [mut updates, mut empties, mut solvers, mut around] = [const { Vec::new() }; 4];
+    for frame in 0..WARM_UP + options.frames {
+        let [nothing, update, solver] =
+            [microseconds(|| empty.update()), microseconds(|| app.update()), microseconds(&mut step)];
+        if frame >= WARM_UP {
+            empties.push(nothing);
+            updates.push(update);
+            solvers.push(solver);
+            around.push(update - nothing - solver);
+        }
+    }
+    json!({
+        "scene": "app",
+        "n": options.n,
+        "us_per_update_empty": measure::median(empties).round(),
+        "us_per_update": measure::median(updates).round(),
+        "us_solver": measure::median(solvers).round(),
+        "us_around_solver": measure::median(around).round(),
+    })
+}
+
+fn spawn_hanging(app: &mut App, options: &Options) {
     let solver = match options.solver {
         Solver::Xpbd => ClothSolver::Xpbd,
         Solver::Explicit => ClothSolver::Explicit,
     };
-    let plugin = ClothPlugin::default().single_threaded();
-    let empty = frame_microseconds(&mut headless(plugin), options.frames);
-    let mut app = headless(plugin);
-    let mesh =
-        app.world_mut().resource_mut::<Assets<Mesh>>().add(ClothGrid::new(1.0, 1.0, options.n, options.n).lying());
+    let grid = ClothGrid::new(1.0, 1.0, options.n, options.n).lying();
+    let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(grid);
     app.world_mut().spawn((
         Mesh3d(mesh),
         Cloth { solver, substeps: options.substeps, tether_slack: Some(options.tether_slack), ..default() },
         Fabric { damping: options.damping, drag: 0.0, lift: 0.0, ..default() },
         Pins::edge_corners(ClothEdge::Top),
     ));
-    let update = frame_microseconds(&mut app, options.frames);
-    let alone = measure::run("hang", options, scene::hang(options, PinnedPart::Corners))?;
-    let solver_alone = alone["us_per_frame_median"].as_f64().unwrap_or_default();
-    Ok(json!({
-        "scene": "app",
-        "n": options.n,
-        "substeps": alone["substeps"],
-        "us_per_update_empty": empty.round(),
-        "us_per_update": update.round(),
-        "us_solver": solver_alone,
-        "us_around_solver": (update - empty - solver_alone).round(),
-    }))
 }
 
 /// A hundred flags on their poles.
@@ -90,10 +109,12 @@ fn frame_microseconds(app: &mut App, frames: u32) -> f64 {
     for _ in 0..WARM_UP {
         app.update();
     }
-    let update = |_| {
-        let start = Instant::now();
-        app.update();
-        start.elapsed().as_secs_f64() * 1e6
-    };
-    measure::median((0..frames).map(update).collect())
+    measure::median((0..frames).map(|_| microseconds(|| app.update())).collect())
+}
+
+/// Wall time of some work, µs.
+fn microseconds(work: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    work();
+    start.elapsed().as_secs_f64() * 1e6
 }

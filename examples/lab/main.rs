@@ -109,7 +109,7 @@ fn main() -> ExitCode {
     let result = match &experiment {
         Experiment::Hang { options, pins } => measure::run("hang", options, scene::hang(options, *pins)),
         Experiment::Drape { options } => measure::run("drape", options, scene::drape(options)),
-        Experiment::App { options } => app::one_cloth(options),
+        Experiment::App { options } => Ok(app::one_cloth(options)),
         Experiment::Many { frames, single_threaded } => Ok(app::many_flags(*frames, *single_threaded)),
     };
     match result {
