@@ -70,6 +70,7 @@ pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity,
     state.tethers = build::tethers(&state.topology, &particles);
     state.pins = pins;
     set_masses(state);
+    // Takes the places of new pins in their targets' space now, before either moves on.
     plan_anchors(state, cloth, poses);
     state.carrier = carrier(state, cloth, poses);
 }

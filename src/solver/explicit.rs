@@ -11,8 +11,9 @@ const STABLE: f32 = 3.6;
 /// Substeps that keep a step of `dt` seconds stable, and the share of stiffness and damping that they can carry: 1
 /// unless more than `ctx.max_substeps` would be needed.
 ///
-/// Symplectic Euler of x'' = -ω² x - γ x' is stable while ω² h² + 2 γ h < 4, kept below [`STABLE`] here. The largest ω² and γ of the whole cloth
-/// are bounded by Gershgorin's circles, twice the sum over a particle's springs of k/m and of c/m.
+/// Symplectic Euler of x'' = -ω² x - γ x' is stable while ω² h² + 2 γ h < 4, kept below [`STABLE`] here. The largest ω²
+/// and γ of the whole cloth are bounded by Gershgorin's circles, twice the sum over a particle's springs of k/m and of
+/// c/m.
 pub(super) fn stable_substeps(
     particles: &Particles,
     topology: &Topology,

@@ -32,7 +32,8 @@ pub struct Gusts {
 
 /// Air velocity around one cloth, m/s.
 ///
-/// The samples stand still in the world while the cloth moves among them, so what it feels has no jumps.
+/// The samples stand still in the world while the cloth moves among them, so what it feels has no jumps, unless it is so
+/// large that it changes between lattices of [`MOST_SAMPLES`].
 pub(super) struct Field {
     /// Place of the first sample, m, relative to the cloth's origin.
     corner: Vec3A,
