@@ -45,6 +45,7 @@ fn hang(criterion: &mut Criterion) {
             material,
             gravity: Vec3A::NEG_Y * 9.81,
             anchors: &anchors,
+            grabs: &[],
             tethers: &tethers,
             tether_slack: 0.002,
             obstacles: &[],

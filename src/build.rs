@@ -15,7 +15,7 @@ pub(crate) mod system;
 mod topology;
 pub(crate) mod weld;
 
-pub use geodesic::tethers;
+pub use geodesic::{grab_tethers, tethers};
 
 use source::SourceMesh;
 use weld::Welded;

@@ -47,6 +47,7 @@ mod pins;
 
 mod anchor;
 mod collider;
+mod grab;
 mod origin;
 mod parallel;
 mod settings;
@@ -59,6 +60,13 @@ mod draw;
 mod commands;
 mod schedule;
 
+#[cfg(feature = "debug")]
+pub mod debug;
+#[cfg(feature = "panel")]
+pub mod panel;
+#[cfg(feature = "picking")]
+pub mod picking;
+
 pub use error::ClothError;
 
 /// What a game needs.
@@ -69,6 +77,7 @@ pub mod prelude {
         commands::ClothCommands,
         error::ClothError,
         fabric::Fabric,
+        grab::{ClothGrabbed, ClothGrip, ClothPoint, ClothReleased, GrabId},
         grid::ClothGrid,
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},

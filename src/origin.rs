@@ -22,6 +22,7 @@ pub(crate) fn teleport(state: &mut ClothState, pose: Affine3A) {
     // Without the scale, which the springs' lengths don't follow.
     let turn = Affine3A { matrix3: pose.matrix3 * state.pose.matrix3.inverse(), translation: Vec3A::ZERO };
     let turn = turn.to_scale_rotation_translation().1;
+    state.release_all();
     let (old_place, old_origin) = (state.pose.translation, Vec3A::from(state.origin));
     let carry = |p: &mut Vec3A| *p = turn * (*p + (old_origin - old_place));
     state.origin = pose.translation.into();
@@ -50,6 +51,7 @@ pub(crate) fn stay_near(state: &mut ClothState) {
     for offset in world_places(&mut state.pins) {
         *offset -= shift;
     }
+    state.grabs.shift(shift);
 }
 
 /// Places of the pins to the world, which are relative to the cloth's origin.

@@ -10,7 +10,7 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{anchor, build, cloth, collider, draw, settings, simulate, wind};
+use crate::{anchor, build, cloth, collider, draw, grab, settings, simulate, wind};
 
 /// The stages of a cloth's frame, in their order. Games order their systems around them.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -24,7 +24,7 @@ pub enum ClothSystems {
     /// The plugin's schedule: events of the step are sent. Read positions after it.
     Finalize,
     /// `PostUpdate`, after transforms have been propagated: cloths are interpolated, shaded and written to their
-    /// meshes.
+    /// meshes, and grabs are told of.
     Draw,
 }
 
@@ -114,6 +114,7 @@ impl Plugin for ClothPlugin {
                         settings::update_settings,
                         anchor::update_pins,
                         anchor::follow_targets,
+                        grab::lead_grabs,
                         collider::gather_obstacles,
                         wind::gather_winds,
                     )
@@ -125,7 +126,9 @@ impl Plugin for ClothPlugin {
             )
             .add_systems(
                 PostUpdate,
-                (draw::mesh::shape_cloths, draw::mesh::write_meshes).chain().in_set(ClothSystems::Draw),
+                (grab::tell_of_grabs, draw::mesh::shape_cloths, draw::mesh::write_meshes)
+                    .chain()
+                    .in_set(ClothSystems::Draw),
             )
             .add_observer(build::system::on_cloth_removed)
             .add_observer(collider::on_collider_removed);

@@ -1,6 +1,6 @@
 //! One step of every cloth: what was gathered goes in, the new state comes out.
 
-use bevy::{ecs::system::NonSendMarker, math::Vec3A, prelude::*};
+use bevy::{ecs::system::NonSendMarker, math::Vec3A, platform::time::Instant, prelude::*};
 
 use crate::{
     cloth::{Cloth, ClothGravity, ClothReset, ClothSolver, ClothStatus, ResetCause},
@@ -43,7 +43,7 @@ fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Ob
         return;
     }
     let Cloth { solver, substeps, max_substeps, gravity_scale, .. } = state.settings;
-    let Work { anchors, obstacles: near, winds: felt, scratch } = &mut state.work;
+    let Work { anchors, grabs, obstacles: near, winds: felt, scratch } = &mut state.work;
     obstacles.around(state.origin, state.settings.collision_mask, near);
     winds.around(state.origin, felt);
     let ctx = StepContext {
@@ -54,6 +54,7 @@ fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Ob
         material,
         gravity: (gravity * gravity_scale).into(),
         anchors,
+        grabs,
         tethers: if state.settings.tether_slack.is_some() { &state.tethers } else { &[] },
         tether_slack: state.settings.tether_slack.unwrap_or_default(),
         obstacles: near,
@@ -61,7 +62,9 @@ fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Ob
         winds: felt,
     };
     state.step_start.clone_from(&state.particles.position);
+    let begun = Instant::now();
     state.report = Some(solver::step(&mut state.particles, &state.topology, &ctx, scratch));
+    state.step_time = begun.elapsed();
     state.particles.force.fill(Vec3A::ZERO);
     let was_still = core::mem::replace(&mut state.is_still, state.particles.position == state.step_start);
     // The first step that moves nothing counts: what is drawn still comes to rest with it.

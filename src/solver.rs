@@ -16,11 +16,16 @@ pub mod constraint;
 pub mod contact;
 pub mod explicit;
 pub mod force;
+pub mod measure;
 
-pub use constraint::tether::Tether;
+pub use constraint::{
+    grab::{Grab, GrabTether},
+    tether::Tether,
+};
 pub use contact::{ColliderShape, Obstacle};
 pub use context::{Anchor, Method, StepContext, StepReport};
 pub use force::wind::{WindRegion, WindSource};
+pub use measure::{Energy, Strain};
 pub use material::{Material, SpringConstants};
 pub use particles::Particles;
 pub use scratch::Scratch;

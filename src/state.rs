@@ -1,5 +1,6 @@
 //! The running state of a cloth, and how a game reads and pushes it.
 
+use core::time::Duration;
 use std::sync::Arc;
 
 use bevy::{
@@ -12,7 +13,10 @@ use crate::{
     build::weld::NO_PARTICLE,
     cloth::Cloth,
     draw::carrier::Carrier,
-    solver::{Anchor, Material, Obstacle, Particles, Scratch, StepReport, Tether, Topology, WindSource},
+    grab::Grabs,
+    solver::{
+        self, Anchor, Energy, Grab, Material, Obstacle, Particles, Scratch, StepReport, Strain, Tether, Topology, WindSource,
+    },
 };
 
 /// Particles of a cloth, in world space. Comes with [`Cloth`](crate::prelude::Cloth); empty until the cloth is ready.
@@ -43,6 +47,8 @@ pub struct ClothState {
     pub(crate) pins: Vec<HeldPin>,
     /// Tethers to the pins.
     pub(crate) tethers: Vec<Tether>,
+    /// Points that are held by hand.
+    pub(crate) grabs: Grabs,
     /// Transform of the entity at the latest step.
     pub(crate) pose: Affine3A,
     /// The entity that carries the cloth, if one does.
@@ -53,6 +59,8 @@ pub struct ClothState {
     pub(crate) is_still: bool,
     /// What the latest step did.
     pub(crate) report: Option<StepReport>,
+    /// Time that the latest step took.
+    pub(crate) step_time: Duration,
     /// The latest step ended in a state that wasn't finite, and was taken back.
     pub(crate) is_taken_back: bool,
     /// What has been asked for and is done at the next occasion.
@@ -87,6 +95,7 @@ pub(crate) struct Said {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Work {
     pub anchors: Vec<Anchor>,
+    pub grabs: Vec<Grab>,
     pub obstacles: Vec<Obstacle>,
     pub winds: Vec<WindSource>,
     pub scratch: Scratch,
@@ -168,6 +177,28 @@ impl ClothState {
     /// What the latest step did: substeps, contacts. None before the first.
     pub fn report(&self) -> Option<StepReport> {
         self.report
+    }
+
+    /// Time that the latest step took on its thread.
+    pub fn step_time(&self) -> Duration {
+        self.step_time
+    }
+
+    /// How far the cloth is stretched along its threads. Computed anew.
+    pub fn strain(&self) -> Strain {
+        solver::measure::strain(&self.particles, &self.topology)
+    }
+
+    /// Where the cloth's energy is, under a gravity in m/s². Computed anew.
+    pub fn energy(&self, gravity: Vec3) -> Energy {
+        let gravity = Vec3A::from(gravity * self.settings.gravity_scale);
+        let energy = |material| solver::measure::energy(&self.particles, &self.topology, &material, gravity);
+        self.material.map(energy).unwrap_or_default()
+    }
+
+    /// Tethers to the pins, as pairs of a particle and the particle that holds it.
+    pub fn tethers(&self) -> &[Tether] {
+        if self.settings.tether_slack.is_some() { &self.tethers } else { &[] }
     }
 
     /// Pushes a particle with `force` (N) during the next step. Forces add up until then, so push once a step: in the

@@ -25,6 +25,7 @@ pub struct Scene {
     pub topology: Topology,
     pub particles: Particles,
     anchors: Vec<Anchor>,
+    grabs: &[],
     tethers: Vec<Tether>,
     pub obstacles: Vec<Obstacle>,
     material: Material,

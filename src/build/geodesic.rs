@@ -21,7 +21,7 @@ use std::collections::BinaryHeap;
 
 use bevy::{math::FloatOrd, prelude::*};
 
-use crate::solver::{Tether, Topology};
+use crate::solver::{GrabTether, Tether, Topology};
 
 /// Most pins that hold one particle.
 const MOST_TETHERS: usize = 4;
@@ -49,6 +49,22 @@ pub fn tethers(topology: &Topology, pins: &[u32]) -> Vec<Tether> {
     // Tethers in a row are of different particles, so none waits for the one before.
     tethers.sort_unstable_by_key(|tether| (tether.pin, tether.particle));
     tethers
+}
+
+/// Tethers of all other particles to a point of a triangle, given by its barycentric `weights`. Sorted by particle.
+///
+/// A particle that is no part of the same piece of cloth has none.
+pub fn grab_tethers(topology: &Topology, triangle: [u32; 3], weights: [f32; 3]) -> Vec<GrabTether> {
+    let rest = triangle.map(|particle| topology.rest[particle as usize]);
+    let point = rest[0] * weights[0] + rest[1] * weights[1] + rest[2] * weights[2];
+    let mut search = Search::new(topology);
+    for (particle, corner) in triangle.into_iter().zip(rest) {
+        // The point isn't a particle: one of its corners names it.
+        search.propose(particle, triangle[0], corner.distance(point));
+    }
+    search.run();
+    let reached = (0..).zip(&search.labels).filter(|(particle, _)| !triangle.contains(particle));
+    reached.filter_map(|(particle, labels)| Some(GrabTether { particle, length: labels.first()?.distance })).collect()
 }
 
 /// A pin and how far it is.

@@ -217,7 +217,9 @@ impl CandidateItem<'_, '_> {
             }
             _ => meshes.add(built.mesh),
         };
-        *self.state = built.state;
+        self.state.release_all();
+        let grabs = core::mem::take(&mut self.state.grabs);
+        *self.state = ClothState { grabs, ..built.state };
         *self.status = ClothStatus::Ready;
         if self.mesh.0 != drawn {
             self.mesh.0 = drawn.clone();

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3A;
 
-use super::{Material, Obstacle, Tether, WindSource};
+use super::{Grab, Material, Obstacle, Tether, WindSource};
 
 /// How the springs are integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,6 +42,8 @@ pub struct StepContext<'a> {
     pub gravity: Vec3A,
     /// Fixed particles and their way.
     pub anchors: &'a [Anchor],
+    /// Hands that pull at the cloth.
+    pub grabs: &'a [Grab],
     /// Longest allowed distances to fixed particles. Used by [`Method::Xpbd`] only.
     pub tethers: &'a [Tether],
     /// By how much of its length a tether gives, no unit. 0.002 to 0.01.

@@ -4,7 +4,7 @@ use bevy::math::{Vec3A, ops};
 
 use super::{
     Method, Particles, Scratch, StepContext, StepReport, Topology,
-    constraint::{anchor, spring, tether},
+    constraint::{anchor, grab, spring, tether},
     contact, explicit,
     force::wind,
 };
@@ -52,17 +52,20 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
                 integrate(particles, &scratch.steady_force, ctx.gravity, decay, h);
                 anchor::advance(particles, ctx.anchors, end, dt);
                 spring::solve(particles, topology, &ctx.material, h, &scratch.spring_shares);
+                grab::solve(particles, ctx.grabs, start..end, h);
                 tether::solve(particles, ctx.tethers, ctx.tether_slack);
+                grab::solve_tethers(particles, ctx.grabs, ctx.tether_slack);
             }
             Method::Explicit => {
                 explicit::sum_forces(particles, topology, &ctx.material, stiffness_scale, scratch);
                 integrate(particles, &scratch.force, ctx.gravity, decay, h);
                 anchor::advance(particles, ctx.anchors, end, dt);
+                grab::solve(particles, ctx.grabs, start..end, h);
             }
         }
         contacts = contact::project(particles, ctx.obstacles, &ctx.material, start..end);
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
-        if ctx.method == Method::Xpbd || contacts > 0 {
+        if ctx.method == Method::Xpbd || contacts > 0 || !ctx.grabs.is_empty() {
             derive_velocities(particles, h);
         }
     }

@@ -49,6 +49,7 @@ impl Bed {
             topology,
             material,
             anchors: Vec::new(),
+            grabs: &[],
             tethers: Vec::new(),
             obstacles: Vec::new(),
             winds: Vec::new(),

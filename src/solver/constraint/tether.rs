@@ -6,6 +6,8 @@
 //!
 //! Kim, Chentanez and Müller-Fischer, "Long Range Attachments" (2012). One-sided: a slack tether does nothing.
 
+use bevy::math::Vec3A;
+
 use crate::solver::Particles;
 
 /// The longest distance that a particle may have from a fixed one.
@@ -21,17 +23,18 @@ pub struct Tether {
 
 /// Pulls every particle that is too far out back to the end of its tether.
 pub fn solve(particles: &mut Particles, tethers: &[Tether], slack: f32) {
-    let Particles { position, inverse_mass, .. } = particles;
-    let inverse_mass = &inverse_mass[..position.len()];
-    let longer = 1.0 + slack;
     for &Tether { particle, pin, length } in tethers {
-        let particle = particle as usize;
-        let pin = position[pin as usize];
-        let reach = length * longer;
-        let away = position[particle] - pin;
-        let distance_squared = away.length_squared();
-        if distance_squared > reach * reach && inverse_mass[particle] > 0.0 {
-            position[particle] = pin + away * (reach / distance_squared.sqrt());
-        }
+        let pin = particles.position[pin as usize];
+        pull_back(particles, particle as usize, pin, length * (1.0 + slack));
+    }
+}
+
+/// Moves a free particle that is farther than `reach` from `hold` straight back to that distance.
+#[inline]
+pub(super) fn pull_back(particles: &mut Particles, particle: usize, hold: Vec3A, reach: f32) {
+    let away = particles.position[particle] - hold;
+    let distance_squared = away.length_squared();
+    if distance_squared > reach * reach && particles.inverse_mass[particle] > 0.0 {
+        particles.position[particle] = hold + away * (reach / distance_squared.sqrt());
     }
 }

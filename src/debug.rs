@@ -1,0 +1,1 @@
+//! Seeing inside: gizmos of springs, pins, tethers and forces, and Bevy diagnostics.

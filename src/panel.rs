@@ -1,0 +1,1 @@
+//! A window that tunes cloth live, on egui.

@@ -1,0 +1,1 @@
+//! Cloth that mouse and fingers can grab, on `bevy_picking`.

@@ -1,0 +1,95 @@
+//! What a laboratory would read off a cloth: how far it is stretched, and where its energy is.
+
+use bevy::math::Vec3A;
+
+use super::{Material, Particles, SpringKind, Topology, constraint::spring};
+
+/// Stretch along the threads: change of length over rest length of the structural springs, no unit. Negative where
+/// they are pressed together.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Strain {
+    /// That of the spring that is stretched the most.
+    pub largest: f32,
+    /// Mean of what is stretched; what is pressed together counts as nothing.
+    pub mean: f32,
+}
+
+/// Energy of a cloth, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Of motion: the sum of m v²/2 over the free particles.
+    pub kinetic: f32,
+    /// Of all springs: the sum of k (|xa - xb| - L0)²/2.
+    pub elastic: f32,
+    /// Of height: minus the sum of m g·x, with x relative to the cloth's origin. Only its changes mean something.
+    pub gravitational: f32,
+}
+
+impl Energy {
+    /// The sum of all.
+    pub fn total(&self) -> f32 {
+        self.kinetic + self.elastic + self.gravitational
+    }
+}
+
+/// Measures the stretch of a cloth.
+pub fn strain(particles: &Particles, topology: &Topology) -> Strain {
+    let mut strain = Strain::default();
+    let mut count = 0_u32;
+    for structural in topology.springs_of(SpringKind::Structural) {
+        let stretch = spring::strain(&particles.position, structural);
+        strain.largest = if count == 0 { stretch } else { strain.largest.max(stretch) };
+        strain.mean += stretch.max(0.0);
+        count += 1;
+    }
+    strain.mean /= count.max(1) as f32;
+    strain
+}
+
+/// Measures the energy of a cloth under `gravity`, m/s².
+pub fn energy(particles: &Particles, topology: &Topology, material: &Material, gravity: Vec3A) -> Energy {
+    let mut energy = Energy::default();
+    for ((position, velocity), &w) in particles.position.iter().zip(&particles.velocity).zip(&particles.inverse_mass) {
+        if w > 0.0 {
+            energy.kinetic += 0.5 * velocity.length_squared() / w;
+            energy.gravitational -= gravity.dot(*position) / w;
+        }
+    }
+    for kind in SpringKind::ALL {
+        let stiffness = material.spring(kind).stiffness;
+        for spring in topology.springs_of(kind) {
+            let stretch = spring::strain(&particles.position, spring) * spring.rest;
+            energy.elastic += 0.5 * stiffness * stretch * stretch;
+        }
+    }
+    energy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::{Spring, SpringBatch, SpringConstants};
+
+    #[test]
+    fn a_stretched_moving_pair_has_the_strain_and_the_energy_of_the_book() {
+        let particles = Particles {
+            position: vec![Vec3A::ZERO, Vec3A::X * 3.0],
+            velocity: vec![Vec3A::ZERO, Vec3A::Y * 4.0],
+            inverse_mass: vec![0.0, 0.5],
+            ..Particles::default()
+        };
+        let topology = Topology {
+            springs: vec![Spring { a: 0, b: 1, rest: 2.0 }],
+            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1 }],
+            areas: vec![1.0; 2],
+            ..Default::default()
+        };
+        let mut springs = [SpringConstants::default(); 3];
+        springs[0].stiffness = 100.0;
+        let material =
+            Material { density: 1.0, springs, damping: 0.0, thickness: 0.0, friction: 0.0, drag: 0.0, lift: 0.0 };
+        assert_eq!(strain(&particles, &topology), Strain { largest: 0.5, mean: 0.5 });
+        let energy = energy(&particles, &topology, &material, Vec3A::X * 10.0);
+        assert_eq!(energy, Energy { kinetic: 16.0, elastic: 50.0, gravitational: -60.0 });
+    }
+}
