@@ -25,16 +25,16 @@ pub struct ClothGrip {
     pub damping: f32,
     /// Largest force of the pull in N. 20 for a firm hand.
     pub max_force: f32,
-    /// How fast the target may lead the cloth in m/s. 5 to 10: one that jumps is caught up with.
+    /// How fast the target may lead the cloth in m/s. 2 to 6: one that jumps is caught up with.
     pub max_speed: f32,
-    /// By how much of its length the cloth around the point may be stretched by the pull of one substep, no unit. 0.02
-    /// to 0.1.
-    pub max_strain: f32,
+    /// Mass of the hand in kg, which the point that it holds has in addition. 0.02 to 0.2: the heavier, the more steadily
+    /// it leads the cloth, and the less it is held back by it.
+    pub mass: f32,
 }
 
 impl Default for ClothGrip {
     fn default() -> Self {
-        Self { stiffness: 5000.0, damping: 10.0, max_force: 20.0, max_speed: 6.0, max_strain: 0.05 }
+        Self { stiffness: 5000.0, damping: 10.0, max_force: 20.0, max_speed: 4.0, mass: 0.05 }
     }
 }
 
@@ -42,13 +42,13 @@ impl ClothGrip {
     /// The same without anything negative or NaN.
     fn in_range(self) -> Self {
         // `max` takes the other value for NaN.
-        let Self { stiffness, damping, max_force, max_speed, max_strain } = self;
+        let Self { stiffness, damping, max_force, max_speed, mass } = self;
         Self {
             stiffness: stiffness.max(0.0).min(1e9),
             damping: damping.max(0.0).min(1e9),
             max_force: max_force.max(0.0),
             max_speed: max_speed.max(0.0),
-            max_strain: max_strain.max(0.0),
+            mass: mass.max(0.0).min(1e6),
         }
     }
 }
@@ -114,7 +114,7 @@ impl ClothState {
     ///
     /// Any number of hands can hold a cloth. What is pinned stays pinned.
     pub fn grab(&mut self, point: ClothPoint, grip: ClothGrip) -> Option<GrabId> {
-        let position = self.point_position(point).filter(|position| position.is_finite())?;
+        let position = self.point_position(point).filter(|_| point.is_on_triangle())?;
         let triangle = self.topology.triangles[point.triangle as usize];
         let tethers = build::grab_tethers(&self.topology, triangle, point.weights.to_array()).into();
         let id = GrabId(self.grabs.count);
@@ -188,8 +188,6 @@ pub(crate) fn lead_grabs(mut cloths: Query<(&mut ClothState, &ClothStatus)>, tim
         work.grabs.clear();
         work.grabs.extend(grabs.held.iter_mut().map(|held| {
             let triangle = topology.triangles[held.point.triangle as usize];
-            let rest = triangle.map(|i| topology.rest[i as usize]);
-            let shortest = (0..3).map(|i| rest[i].distance(rest[(i + 1) % 3])).fold(f32::INFINITY, f32::min);
             let start = held.led;
             held.led = start.move_towards(Vec3A::from(held.target - *origin), held.grip.max_speed * time.delta_secs());
             Grab {
@@ -200,7 +198,7 @@ pub(crate) fn lead_grabs(mut cloths: Query<(&mut ClothState, &ClothStatus)>, tim
                 stiffness: held.grip.stiffness,
                 damping: held.grip.damping,
                 max_force: held.grip.max_force,
-                max_move: held.grip.max_strain * shortest,
+                mass: held.grip.mass,
                 tethers: if has_tethers { held.tethers.clone() } else { Arc::default() },
             }
         }));

@@ -85,4 +85,6 @@ pub mod prelude {
         state::ClothState,
         wind::{Wind, WindShape},
     };
+    #[cfg(feature = "picking")]
+    pub use crate::picking::{ClothPickingPlugin, ClothPickingSettings, PointerGrabs};
 }

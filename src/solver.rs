@@ -25,8 +25,8 @@ pub use constraint::{
 pub use contact::{ColliderShape, Obstacle};
 pub use context::{Anchor, Method, StepContext, StepReport};
 pub use force::wind::{WindRegion, WindSource};
-pub use measure::{Energy, Strain};
 pub use material::{Material, SpringConstants};
+pub use measure::{Energy, Strain};
 pub use particles::Particles;
 pub use scratch::Scratch;
 pub use step::{MAX_TIME_STEP, step};

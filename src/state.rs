@@ -15,7 +15,8 @@ use crate::{
     draw::carrier::Carrier,
     grab::Grabs,
     solver::{
-        self, Anchor, Energy, Grab, Material, Obstacle, Particles, Scratch, StepReport, Strain, Tether, Topology, WindSource,
+        self, Anchor, Energy, Grab, Material, Obstacle, Particles, Scratch, StepReport, Strain, Tether, Topology,
+        WindSource,
     },
 };
 

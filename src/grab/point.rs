@@ -14,6 +14,13 @@ pub struct ClothPoint {
     pub weights: Vec3,
 }
 
+impl ClothPoint {
+    /// Whether the weights are those of a point of the triangle, but for rounding.
+    pub(super) fn is_on_triangle(&self) -> bool {
+        self.weights.min_element() >= -1e-3 && (self.weights.element_sum() - 1.0).abs() < 1e-3
+    }
+}
+
 impl ClothState {
     /// The point of the cloth that is nearest to a world position, m. None until the cloth is ready, and for a position
     /// that isn't finite.
@@ -55,7 +62,9 @@ fn nearest_weights(p: Vec3A, [a, b, c]: [Vec3A; 3]) -> Vec3 {
     if area > 0.0 && on_face.cmpge(Vec3::ZERO).all() {
         return on_face;
     }
-    let along = |from: Vec3A, side: Vec3A| ((p - from).dot(side) / side.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+    let along = |from: Vec3A, side: Vec3A| {
+        ((p - from).dot(side) / side.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0)
+    };
     let (u, v, w) = (along(a, ab), along(b, c - b), along(a, ac));
     let sides = [Vec3::new(1.0 - u, u, 0.0), Vec3::new(0.0, 1.0 - v, v), Vec3::new(1.0 - w, 0.0, w)];
     let distance = |weights: &Vec3| blend([a, b, c], *weights).distance_squared(p);

@@ -12,13 +12,15 @@ pub struct Scratch {
     /// A third of the air's velocity as each particle feels it: less its own, m/s.
     pub(super) relative_air: Vec<Vec3A>,
     /// External force and force of the air on each particle, N: constant over some substeps.
-    pub(super) steady_force: Vec<Vec3A>,
+    pub(crate) steady_force: Vec<Vec3A>,
     /// The steady force and the force of the springs on each particle, N.
     pub(super) force: Vec<Vec3A>,
     /// How much of each spring's push its two ends take, 1/kg.
     pub(super) spring_shares: Vec<[f32; 2]>,
     /// Sum of (stiffness in N/m, damping in N·s/m) of the springs at each particle.
     pub(super) spring_sums: Vec<(f32, f32)>,
+    /// Held particles and their inverse masses without the hands, 1/kg.
+    pub(super) held: Vec<(u32, f32)>,
 }
 
 impl Scratch {

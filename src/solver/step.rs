@@ -30,6 +30,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         return StepReport { substeps: 0, stiffness_scale: 1.0, contacts: 0 };
     }
     scratch.fit(topology);
+    grab::take_up(particles, ctx.grabs, &mut scratch.held);
     let (substeps, stiffness_scale) = match ctx.method {
         Method::Xpbd => (ctx.substeps.max(1), 1.0),
         Method::Explicit => explicit::stable_substeps(particles, topology, ctx, dt, scratch),
@@ -47,14 +48,16 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         if substep % air_interval == 0 {
             wind::apply_air(particles, topology, ctx, h * air_interval as f32, scratch);
         }
+        grab::carry(particles, ctx.grabs, start..end, h);
         match ctx.method {
             Method::Xpbd => {
                 integrate(particles, &scratch.steady_force, ctx.gravity, decay, h);
                 anchor::advance(particles, ctx.anchors, end, dt);
                 spring::solve(particles, topology, &ctx.material, h, &scratch.spring_shares);
                 grab::solve(particles, ctx.grabs, start..end, h);
-                tether::solve(particles, ctx.tethers, ctx.tether_slack);
                 grab::solve_tethers(particles, ctx.grabs, ctx.tether_slack);
+                // After those of the hands: where both can't hold, pins are stronger.
+                tether::solve(particles, ctx.tethers, ctx.tether_slack);
             }
             Method::Explicit => {
                 explicit::sum_forces(particles, topology, &ctx.material, stiffness_scale, scratch);
@@ -69,6 +72,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
             derive_velocities(particles, h);
         }
     }
+    grab::put_down(particles, &scratch.held);
     StepReport { substeps, stiffness_scale, contacts }
 }
 

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use bevy::{
+    app::Plugins,
     asset::RenderAssetUsages,
     ecs::component::Mutable,
     mesh::{Indices, MeshPlugin, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues},
@@ -27,10 +28,10 @@ pub fn headless() -> App {
     headless_with(ClothPlugin::default())
 }
 
-/// The same with a plugin that is set up otherwise.
-pub fn headless_with(plugin: ClothPlugin) -> App {
+/// The same with a plugin that is set up otherwise, or more of them.
+pub fn headless_with<M>(plugins: impl Plugins<M>) -> App {
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin, plugin))
+    app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin, plugins))
         .init_resource::<Heard>()
         .add_observer(|event: On<ClothReady>, mut heard: ResMut<Heard>| heard.ready.push(event.entity))
         .add_observer(|event: On<ClothFailed>, mut heard: ResMut<Heard>| {

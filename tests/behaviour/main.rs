@@ -17,12 +17,15 @@ mod draws_between_steps;
 mod events;
 mod far_away;
 mod forces;
+mod grabs;
 mod gravity;
 mod late_mesh;
 mod missing_plugins;
 mod obstacles;
 mod pin_selectors;
 mod pin_targets;
+#[cfg(feature = "picking")]
+mod pointers;
 mod recovery;
 mod reflection;
 mod removal;

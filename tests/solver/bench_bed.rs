@@ -8,8 +8,8 @@ use bevy_drape::{
     build,
     prelude::{ClothGrid, Fabric},
     solver::{
-        Anchor, Material, Method, Obstacle, Particles, Scratch, StepContext, StepReport, Tether, Topology, WindSource,
-        step,
+        Anchor, Grab, Material, Method, Obstacle, Particles, Scratch, StepContext, StepReport, Tether, Topology,
+        WindSource, step,
     },
 };
 
@@ -22,6 +22,7 @@ pub struct Bed {
     pub particles: Particles,
     pub material: Material,
     pub anchors: Vec<Anchor>,
+    pub grabs: Vec<Grab>,
     pub tethers: Vec<Tether>,
     pub obstacles: Vec<Obstacle>,
     pub winds: Vec<WindSource>,
@@ -49,7 +50,7 @@ impl Bed {
             topology,
             material,
             anchors: Vec::new(),
-            grabs: &[],
+            grabs: Vec::new(),
             tethers: Vec::new(),
             obstacles: Vec::new(),
             winds: Vec::new(),
@@ -88,6 +89,7 @@ impl Bed {
             material: self.material,
             gravity: self.gravity,
             anchors: &self.anchors,
+            grabs: &self.grabs,
             tethers: &self.tethers,
             tether_slack: 0.0,
             obstacles: &self.obstacles,

@@ -6,6 +6,7 @@ mod boundaries;
 mod contact;
 mod convergence;
 mod determinism;
+mod grabs;
 mod memory;
 mod rates;
 mod robustness;

@@ -13,8 +13,10 @@
 //!
 //! lambda = -(k h² (p - target) + c h (Δp - Δtarget)) / ((k h² + c h) w + 1)
 //!
-//! The bounds keep a jerk from tearing the point out of the cloth around it: what the springs and tethers haven't
-//! carried along yet holds it back.
+//! While it is held, the point has the mass of the hand as well: particles of a fraction of a gram, between springs
+//! that are solved once a substep, couldn't hold the cloth's weight nor lead it. That mass has no inertia of its own:
+//! the point starts each substep at the speed of its target, so that it doesn't swing around it. The force is bounded,
+//! and what can't follow holds the hand back.
 
 use core::ops::Range;
 use std::sync::Arc;
@@ -41,8 +43,8 @@ pub struct Grab {
     pub damping: f32,
     /// The spring's largest force, N.
     pub max_force: f32,
-    /// The farthest that the spring moves the point within a substep, m.
-    pub max_move: f32,
+    /// Mass of the hand, kg, which the point has in addition to its own.
+    pub mass: f32,
     /// Tethers of the other particles to the point.
     pub tethers: Arc<[GrabTether]>,
 }
@@ -62,25 +64,66 @@ impl Grab {
         let [a, b, c] = self.particles.map(|i| of[i as usize]);
         a * self.weights[0] + b * self.weights[1] + c * self.weights[2]
     }
+
+    /// Inverse mass of the grabbed point, 1/kg: the sum of bi² wi.
+    fn inverse_mass(&self, particles: &Particles) -> f32 {
+        let share = |i: usize| self.weights[i] * self.weights[i] * particles.inverse_mass[self.particles[i] as usize];
+        share(0) + share(1) + share(2)
+    }
+
+    /// Changes the point's position or velocity by `change`: its particles' by bi wi / w of it.
+    fn push(&self, particles: &mut Particles, change: Vec3A, of: impl Fn(&mut Particles) -> &mut [Vec3A]) {
+        let w = self.inverse_mass(particles);
+        for (&particle, weight) in self.particles.iter().zip(self.weights) {
+            let share = weight * particles.inverse_mass[particle as usize];
+            // None of it where all are fixed.
+            if share > 0.0 {
+                of(particles)[particle as usize] += change * (share / w);
+            }
+        }
+    }
+}
+
+/// Adds the hands' masses to the particles that they hold, and keeps the `own` inverse masses of those.
+pub fn take_up(particles: &mut Particles, grabs: &[Grab], own: &mut Vec<(u32, f32)>) {
+    own.clear();
+    for grab in grabs {
+        for (&particle, weight) in grab.particles.iter().zip(grab.weights) {
+            let w = &mut particles.inverse_mass[particle as usize];
+            own.push((particle, *w));
+            *w /= 1.0 + *w * grab.mass * weight;
+        }
+    }
+}
+
+/// Gives the held particles their `own` inverse masses back.
+pub fn put_down(particles: &mut Particles, own: &[(u32, f32)]) {
+    // Backwards: the first entry of a particle that two hands hold is the one without either.
+    for &(particle, w) in own.iter().rev() {
+        particles.inverse_mass[particle as usize] = w;
+    }
+}
+
+/// Gives every grabbed point the speed of its target in the part `span` (0..=1) of the step, a substep of `h` seconds.
+pub fn carry(particles: &mut Particles, grabs: &[Grab], span: Range<f32>, h: f32) {
+    for grab in grabs {
+        let speed = (grab.end - grab.start) * ((span.end - span.start) / h);
+        let lacking = speed - grab.point(&particles.velocity);
+        grab.push(particles, lacking, |particles| &mut particles.velocity);
+    }
 }
 
 /// Pulls every grabbed point towards its target within the part `span` (0..=1) of the step, a substep of `h` seconds.
 pub fn solve(particles: &mut Particles, grabs: &[Grab], span: Range<f32>, h: f32) {
     for grab in grabs {
         let (before, target) = (grab.start.lerp(grab.end, span.start), grab.start.lerp(grab.end, span.end));
-        let inverse_mass = grab.particles.map(|i| particles.inverse_mass[i as usize]);
-        let w: f32 = (0..3).map(|i| grab.weights[i] * grab.weights[i] * inverse_mass[i]).sum();
-        if w == 0.0 {
-            continue;
-        }
+        let w = grab.inverse_mass(particles);
         let (now, previous) = (grab.point(&particles.position), grab.point(&particles.previous));
         let drift = (now - previous) - (target - before);
         let (k, c) = (grab.stiffness * h * h, grab.damping * h);
         let lambda = ((target - now) * k - drift * c) / ((k + c) * w + 1.0);
-        let lambda = lambda.clamp_length_max((grab.max_force * h * h).min(grab.max_move / w));
-        for i in 0..3 {
-            particles.position[grab.particles[i] as usize] += lambda * (grab.weights[i] * inverse_mass[i]);
-        }
+        let lambda = lambda.clamp_length_max(grab.max_force * h * h);
+        grab.push(particles, lambda * w, |particles| &mut particles.position);
     }
 }
 
@@ -120,7 +163,7 @@ mod tests {
             stiffness: 100.0,
             damping: 3.0,
             max_force: f32::INFINITY,
-            max_move: f32::INFINITY,
+            mass: 0.0,
             tethers: Arc::default(),
         }
     }
@@ -137,13 +180,24 @@ mod tests {
     }
 
     #[test]
-    fn the_force_and_the_way_of_a_grab_are_bounded() {
+    fn the_force_of_a_grab_is_bounded() {
         let mut particles = triangle();
         solve(&mut particles, &[Grab { max_force: 6.0, ..grab() }], 0.0..1.0, 0.1);
         assert!((particles.position[0].z - 6.0 / 1.5 * 0.01).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_held_point_has_the_mass_of_its_hands_and_gets_its_own_back() {
         let mut particles = triangle();
-        solve(&mut particles, &[Grab { max_move: 0.01, ..grab() }], 0.0..1.0, 0.1);
-        assert!((particles.position[0].z - 0.01).abs() < 1e-6);
+        let hands = [Grab { mass: 3.0, ..grab() }, Grab { mass: 6.0, weights: [1.0, 0.0, 0.0], ..grab() }];
+        let mut own = Vec::new();
+        take_up(&mut particles, &hands, &mut own);
+        let masses = [7.5, 1.5, 1.5];
+        for (w, mass) in particles.inverse_mass.iter().zip(masses) {
+            assert!((w * mass - 1.0).abs() < 1e-6, "{w}");
+        }
+        put_down(&mut particles, &own);
+        assert_eq!(particles, triangle());
     }
 
     #[test]
