@@ -143,7 +143,8 @@ pub(crate) fn on_collider_removed(removed: On<Remove, ClothCollider>, mut comman
 /// All obstacles of the coming step, in world space.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Obstacles {
-    list: Vec<(Entity, u32, Obstacle)>,
+    /// With their entity and layers, in the order of their entities.
+    pub list: Vec<(Entity, u32, Obstacle)>,
 }
 
 impl Obstacles {

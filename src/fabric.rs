@@ -1,6 +1,13 @@
 //! What a cloth is made of.
 
+mod begun;
+pub(crate) mod file;
+pub(crate) mod handle;
+pub(crate) mod loader;
+mod presets;
+
 use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{ClothError, check},
@@ -10,8 +17,19 @@ use crate::{
 /// The physical constants of a cloth. Change them at any time: they act in the next step.
 ///
 /// A value out of its range is refused with one warning, and the cloth keeps what it had.
-#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+///
+/// It is an asset as well, from `*.fabric.ron` files or [`Assets<Fabric>`]: a
+/// [`FabricHandle`](crate::prelude::FabricHandle) next to the cloth copies it here. A file has each field once:
+///
+/// ```
+/// # use bevy_drape::prelude::*;
+/// let text = Fabric::SILK.to_ron();
+/// assert!(text.contains("density: 0.09,"));
+/// assert_eq!(Fabric::from_ron(&text), Ok(Fabric::SILK));
+/// ```
+#[derive(Asset, Component, Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[serde(deny_unknown_fields)]
 pub struct Fabric {
     /// Areal density in kg/m². 0.05 for silk, 0.2 for cotton, 0.6 for heavy canvas. Greater than zero.
     pub density: f32,
@@ -42,24 +60,27 @@ pub struct Fabric {
 impl Default for Fabric {
     /// A light woven cotton.
     fn default() -> Self {
-        Self {
-            density: 0.2,
-            structural_stiffness: 5000.0,
-            shear_stiffness: 500.0,
-            bend_stiffness: 20.0,
-            structural_damping: 0.0,
-            shear_damping: 0.0,
-            bend_damping: 0.0,
-            damping: 0.2,
-            thickness: 0.005,
-            friction: 0.5,
-            drag: 1.2,
-            lift: 0.4,
-        }
+        Self::LIGHT_WEAVE
     }
 }
 
 impl Fabric {
+    /// The default, and what the presets don't say.
+    const LIGHT_WEAVE: Self = Self {
+        density: 0.2,
+        structural_stiffness: 5000.0,
+        shear_stiffness: 500.0,
+        bend_stiffness: 20.0,
+        structural_damping: 0.0,
+        shear_damping: 0.0,
+        bend_damping: 0.0,
+        damping: 0.2,
+        thickness: 0.005,
+        friction: 0.5,
+        drag: 1.2,
+        lift: 0.4,
+    };
+
     /// The constants as the solver reads them, if all are in their range.
     ///
     /// # Errors

@@ -39,16 +39,15 @@ impl Default for ClothGrip {
 }
 
 impl ClothGrip {
-    /// The same without anything negative or NaN.
+    /// The same without anything negative, NaN or too large to reckon with.
     fn in_range(self) -> Self {
-        // `max` takes the other value for NaN.
-        let Self { stiffness, damping, max_force, max_speed, mass } = self;
+        let bounded = |value: f32| if value.is_nan() { 0.0 } else { value.clamp(0.0, 1e9) };
         Self {
-            stiffness: stiffness.max(0.0).min(1e9),
-            damping: damping.max(0.0).min(1e9),
-            max_force: max_force.max(0.0),
-            max_speed: max_speed.max(0.0),
-            mass: mass.max(0.0).min(1e6),
+            stiffness: bounded(self.stiffness),
+            damping: bounded(self.damping),
+            max_force: bounded(self.max_force),
+            max_speed: bounded(self.max_speed),
+            mass: bounded(self.mass),
         }
     }
 }

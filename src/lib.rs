@@ -71,12 +71,14 @@ pub use error::ClothError;
 
 /// What a game needs.
 pub mod prelude {
+    #[cfg(feature = "picking")]
+    pub use crate::picking::{ClothPickingPlugin, ClothPickingSettings, PointerGrabs};
     pub use crate::{
         cloth::{Cloth, ClothFailed, ClothGravity, ClothReady, ClothReset, ClothSolver, ClothStatus, ResetCause},
         collider::ClothCollider,
         commands::ClothCommands,
         error::ClothError,
-        fabric::Fabric,
+        fabric::{Fabric, file::FabricFileError, handle::FabricHandle},
         grab::{ClothGrabbed, ClothGrip, ClothPoint, ClothReleased, GrabId},
         grid::ClothGrid,
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
@@ -85,6 +87,4 @@ pub mod prelude {
         state::ClothState,
         wind::{Wind, WindShape},
     };
-    #[cfg(feature = "picking")]
-    pub use crate::picking::{ClothPickingPlugin, ClothPickingSettings, PointerGrabs};
 }

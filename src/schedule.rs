@@ -10,12 +10,17 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{anchor, build, cloth, collider, draw, grab, settings, simulate, wind};
+use crate::{
+    anchor, build, cloth, collider, draw,
+    fabric::{self, Fabric},
+    grab, settings, simulate, wind,
+};
 
 /// The stages of a cloth's frame, in their order. Games order their systems around them.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClothSystems {
-    /// `PreUpdate`: meshes become cloth, failed ones are tried again, resets are done.
+    /// `PreUpdate`: fabrics are copied from their assets, meshes become cloth, failed ones are tried again, resets are
+    /// done.
     Prepare,
     /// The plugin's schedule: settings, pins, obstacles and winds are read. Move those before it.
     Gather,
@@ -66,6 +71,11 @@ impl ClothPlugin {
         self
     }
 
+    /// The schedule that cloths step in.
+    pub fn schedule(&self) -> InternedScheduleLabel {
+        self.schedule
+    }
+
     fn is_fixed(&self) -> bool {
         [
             FixedFirst.intern(),
@@ -81,6 +91,7 @@ impl ClothPlugin {
 
 impl Plugin for ClothPlugin {
     fn build(&self, app: &mut App) {
+        fabric::loader::register(app);
         app.init_resource::<cloth::ClothGravity>()
             .init_resource::<collider::Obstacles>()
             .init_resource::<wind::Winds>()
@@ -105,7 +116,14 @@ impl Plugin for ClothPlugin {
             )
             .add_systems(
                 PreUpdate,
-                (build::system::warn_without_mesh, build::system::build_cloths).in_set(ClothSystems::Prepare),
+                (
+                    fabric::handle::copy_fabrics
+                        .run_if(resource_exists::<Assets<Fabric>>)
+                        .before(build::system::build_cloths),
+                    build::system::warn_without_mesh,
+                    build::system::build_cloths,
+                )
+                    .in_set(ClothSystems::Prepare),
             )
             .add_systems(
                 self.schedule,
@@ -134,8 +152,9 @@ impl Plugin for ClothPlugin {
             .add_observer(collider::on_collider_removed);
     }
 
-    /// Says what is missing, once all plugins are there.
+    /// Does what needs a plugin that has come later, and says what is missing.
     fn finish(&self, app: &mut App) {
+        fabric::loader::register(app);
         let world = app.world();
         let needs = [
             ("TimePlugin (in MinimalPlugins)", world.contains_resource::<Time>()),

@@ -32,12 +32,14 @@ pub(crate) struct Drawn {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
     tangents: Vec<[f32; 4]>,
-    bounds: Option<Aabb3d>,
+    /// The box around all particles.
+    pub bounds: Option<Aabb3d>,
     /// What the data was computed from; the same again needs no work.
     key: Option<(u64, f32, Affine3A, Affine3A)>,
     /// The mesh asset doesn't have the data yet.
     is_new: bool,
-    particles: Vec<Vec3A>,
+    /// Position of each particle; none before the first time.
+    pub particles: Vec<Vec3A>,
     sums: Vec<Vec3A>,
 }
 

@@ -1,6 +1,7 @@
 //! A press takes hold of the point under the pointer.
 
 use bevy::{
+    ecs::system::SystemParam,
     picking::{
         backend::ray::{RayId, RayMap},
         events::{Pointer, Press},
@@ -17,40 +18,55 @@ use super::{
 };
 use crate::{build::weld::NO_PARTICLE, draw::mesh::ClothMesh, grab::ClothPoint, state::ClothState};
 
+/// Who points, from where, and at what.
+#[derive(SystemParam)]
+pub(super) struct Sight<'w, 's> {
+    pointers: Query<'w, 's, (&'static PointerId, &'static PointerPress)>,
+    cursors: Query<'w, 's, &'static CursorOptions>,
+    cameras: Query<'w, 's, &'static GlobalTransform, With<Camera>>,
+    rays: Res<'w, RayMap>,
+    ray_cast: MeshRayCast<'w, 's>,
+}
+
 /// Grabs the cloth that is pressed, if it is the nearest thing under the pointer.
 pub(super) fn on_press(
     press: On<Pointer<Press>>,
     mut cloths: Query<(&mut ClothState, &ClothMesh)>,
-    cameras: Query<&GlobalTransform, With<Camera>>,
-    pointers: Query<(&PointerId, &PointerPress)>,
-    cursors: Query<&CursorOptions>,
-    settings: Res<ClothPickingSettings>,
     mut grabs: ResMut<PointerGrabs>,
-    rays: Res<RayMap>,
-    mut ray_cast: MeshRayCast,
+    settings: Res<ClothPickingSettings>,
+    mut sight: Sight,
 ) {
-    let (entity, pointer) = (press.entity, press.pointer_id);
-    let is_other = entity != press.original_event_target();
-    if is_other || !settings.enabled || press.button != settings.button || grabs.held_by(pointer).is_some() {
+    let (entity, pointer, camera) = (press.entity, press.pointer_id, press.hit.camera);
+    // Presses are told to the parents of what was pressed as well.
+    let is_other = entity != press.original_event_target() || press.button != settings.button;
+    if is_other || !settings.enabled || grabs.held_by(pointer).is_some() || sight.turns_camera(pointer, press.button) {
         return;
     }
     let Ok((mut state, mesh)) = cloths.get_mut(entity) else { return };
-    // The pointer turns the camera: with another button, or locked in place by one that follows the mouse.
-    let is_busy = pointers.iter().any(|(&id, press)| id == pointer && other_button(press, settings.button));
-    let is_locked = cursors.iter().any(|cursor| cursor.grab_mode == CursorGrabMode::Locked);
-    if is_busy || is_locked && pointer == PointerId::Mouse {
-        return;
-    }
-    let camera = press.hit.camera;
-    let (Ok(view), Some(&ray)) = (cameras.get(camera), rays.map.get(&RayId::new(camera, pointer))) else { return };
-    let is_cloth = |hit: Entity| hit == entity;
-    let only_cloth = MeshRayCastSettings::default().with_filter(&is_cloth).with_visibility(RayCastVisibility::Any);
-    let Some((_, hit)) = ray_cast.cast_ray(ray, &only_cloth).first() else { return };
-    let Some(point) = point_of(&state, mesh, hit) else { return };
+    let Some((hit, depth)) = sight.look(entity, pointer, camera) else { return };
+    let Some(point) = point_of(&state, mesh, &hit) else { return };
     let Some(grab) = state.grab(point, settings.grip) else { return };
-    let depth = (hit.point - view.translation()).dot(*view.forward());
     let target = press.pointer_location.target.clone();
     grabs.holds.push(Hold { pointer, target, camera, cloth: entity, grab, point, depth, spread: None });
+}
+
+impl Sight<'_, '_> {
+    /// Whether a pointer turns the camera: with another button, or locked in place by one that follows the mouse.
+    fn turns_camera(&self, pointer: PointerId, button: PointerButton) -> bool {
+        let is_busy = |(&id, press): (&PointerId, &PointerPress)| id == pointer && other_button(press, button);
+        let is_locked = |cursor: &CursorOptions| cursor.grab_mode == CursorGrabMode::Locked;
+        self.pointers.iter().any(is_busy) || pointer == PointerId::Mouse && self.cursors.iter().any(is_locked)
+    }
+
+    /// Where a pointer's ray hits an entity's mesh, and how far from the camera that is, m, along its view.
+    fn look(&mut self, entity: Entity, pointer: PointerId, camera: Entity) -> Option<(RayMeshHit, f32)> {
+        let view = self.cameras.get(camera).ok()?;
+        let &ray = self.rays.map.get(&RayId::new(camera, pointer))?;
+        let is_it = |hit: Entity| hit == entity;
+        let only = MeshRayCastSettings::default().with_filter(&is_it).with_visibility(RayCastVisibility::Any);
+        let (_, hit) = self.ray_cast.cast_ray(ray, &only).first()?;
+        Some((hit.clone(), (hit.point - view.translation()).dot(*view.forward())))
+    }
 }
 
 fn other_button(press: &PointerPress, button: PointerButton) -> bool {

@@ -11,10 +11,13 @@ mod bad_values;
 mod changed_mesh;
 mod collision_mask;
 mod commands;
+#[cfg(feature = "debug")]
+mod debug;
 mod determinism;
 mod draws;
 mod draws_between_steps;
 mod events;
+mod fabric_assets;
 mod far_away;
 mod forces;
 mod grabs;

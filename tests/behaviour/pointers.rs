@@ -7,6 +7,7 @@ use bevy::{
         mouse::{MouseButtonInput, MouseScrollUnit, MouseWheel},
         touch::{TouchInput, TouchPhase},
     },
+    math::ops,
     picking::{DefaultPickingPlugins, pointer::PointerId},
     prelude::*,
     window::{CursorGrabMode, CursorMoved, CursorOptions, PrimaryWindow, WindowEvent, WindowPlugin},
@@ -182,7 +183,7 @@ fn the_wheel_moves_what_is_held_away_and_back() {
         let scroll = MouseWheel { unit, x: 0.0, y, window, phase: TouchPhase::Moved };
         send(&mut app, scroll);
         app.update();
-        let expected = if y > 0.0 { before * 0.1_f32.exp() } else { before };
+        let expected = if y > 0.0 { before * ops::exp(0.1) } else { before };
         assert!((depth(&app) - expected).abs() < 1e-3, "{} m after {y}", depth(&app));
     }
 }

@@ -109,9 +109,14 @@ pub fn sample_air(particles: &Particles, ctx: &StepContext, scratch: &mut Scratc
     if !feels_air(ctx) {
         return;
     }
-    for wind in ctx.winds {
-        let field = gusts::Field::sample(wind, &particles.position);
-        for (air, &place) in scratch.air_velocity.iter_mut().zip(&particles.position) {
+    add_air_velocity(ctx.winds, &particles.position, &particles.position, &mut scratch.air_velocity);
+}
+
+/// Adds the velocity of all winds at each of `places` to `air`, as a cloth with particles at `position` feels it there.
+pub(crate) fn add_air_velocity(winds: &[WindSource], position: &[Vec3A], places: &[Vec3A], air: &mut [Vec3A]) {
+    for wind in winds {
+        let field = gusts::Field::sample(wind, position);
+        for (air, &place) in air.iter_mut().zip(places) {
             let weight = wind.region.weight(place);
             if weight > 0.0 {
                 *air += field.at(place) * weight;
