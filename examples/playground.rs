@@ -1,8 +1,8 @@
 //! The main scene: a curtain in the wind, a cloth on a ball, one on a box, and a flag that a glTF file brings.
 //!
 //! ```text
-//! cargo run --example playground
-//! cargo run --example playground -- --capture captures --frames 240 --every 240
+//! cargo run --all-features --example playground
+//! cargo run --all-features --example playground -- --capture captures --frames 240 --every 240
 //! ```
 
 mod common;
@@ -14,17 +14,22 @@ use bevy::{
     prelude::*,
     world_serialization::WorldInstanceReady,
 };
-use bevy_drape::prelude::*;
+use bevy_drape::{
+    debug::{ClothDebugPlugin, ClothDiagnosticsPlugin},
+    panel::ClothPanelPlugin,
+    prelude::*,
+};
 
 fn main() -> AppExit {
     common::app(
         "bevy_drape playground",
-        "Left drag: turn   Right drag: shift   Wheel: zoom   R: reset   W: wind   Space: pause",
+        "Drag cloth, or the view   Right drag: shift   Wheel: zoom   R: reset   W: wind   Space: pause   F1: panel",
     )
-    .add_plugins(ClothPlugin::default())
+    .add_plugins((ClothPlugin::default(), ClothPickingPlugin))
+    .add_plugins((ClothPanelPlugin::default(), ClothDebugPlugin, ClothDiagnosticsPlugin))
     .add_systems(Startup, (common::spawn_scenery, setup))
     .add_systems(FixedUpdate, slide_rings)
-    .add_systems(Update, (reset, calm, pause))
+    .add_systems(Update, (reset, calm, pause, common::rest_camera_while_dragging))
     .run()
 }
 
@@ -36,6 +41,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio, server: Res<AssetSe
     spawn_draped(
         &mut commands,
         &mut studio,
+        "Drape on the ball",
         Sphere::new(0.36),
         Vec3::new(-0.75, 0.36, 0.9),
         Color::srgb(0.16, 0.38, 0.62),
@@ -43,6 +49,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio, server: Res<AssetSe
     spawn_draped(
         &mut commands,
         &mut studio,
+        "Drape on the box",
         Cuboid::new(0.7, 0.6, 0.7),
         Vec3::new(0.75, 0.3, 0.7),
         Color::srgb(0.88, 0.72, 0.32),
@@ -87,6 +94,7 @@ fn spawn_curtain(commands: &mut Commands, studio: &mut common::Studio) {
         Fabric { density: 0.15, bend_stiffness: 5.0, ..default() },
         left.and(right),
         Transform::from_translation(middle - Vec3::Y * 0.93),
+        Name::new("Curtain"),
     ));
 }
 
@@ -98,8 +106,14 @@ fn slide_rings(time: Res<Time>, mut rings: Query<(&Ring, &mut Transform)>) {
 }
 
 /// A cloth that falls on an obstacle.
-fn spawn_draped<S>(commands: &mut Commands, studio: &mut common::Studio, solid: S, place: Vec3, color: Color)
-where
+fn spawn_draped<S>(
+    commands: &mut Commands,
+    studio: &mut common::Studio,
+    name: &'static str,
+    solid: S,
+    place: Vec3,
+    color: Color,
+) where
     S: Into<Mesh> + Into<ClothCollider> + Copy,
 {
     commands.spawn((
@@ -112,6 +126,7 @@ where
         Cloth { substeps: 12, ..default() },
         Fabric { bend_stiffness: 10.0, thickness: 0.008, friction: 0.6, ..default() },
         Transform::from_translation(place + Vec3::Y * 0.75).with_rotation(Quat::from_rotation_y(0.5)),
+        Name::new(name),
     ));
 }
 

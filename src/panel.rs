@@ -1,1 +1,199 @@
 //! A window that tunes cloth live, on egui.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_drape::{panel::ClothPanelPlugin, prelude::*};
+//!
+//! App::new().add_plugins((DefaultPlugins, ClothPlugin::default(), ClothPanelPlugin::default()));
+//! ```
+//!
+//! F1 shows and hides the window. A game's own egui can have the panel's content instead: [`cloth_panel`] draws it
+//! anywhere. egui is `bevy_egui::egui`; a different version of it in a game doesn't fit.
+
+mod actions;
+mod advice;
+mod aim;
+mod code;
+mod control;
+#[cfg(feature = "debug")]
+mod debug;
+mod fields;
+mod loaded;
+mod memory;
+mod model;
+mod number;
+mod readings;
+mod surroundings;
+mod tuning;
+mod watch;
+
+use bevy::{prelude::*, time::TimeSystems};
+use bevy_egui::{
+    EguiContexts, EguiPlugin, EguiPrimaryContextPass,
+    egui::{self, Frame, Margin, Ui, UiBuilder, Window},
+    input::EguiWantsInput,
+};
+
+use crate::schedule::{ClothPlugin, ClothSystems};
+use memory::Memory;
+use model::Model;
+
+/// Size of the window when it first opens, in points. A smaller screen makes it smaller.
+const SIZE: [f32; 2] = [312.0, 620.0];
+
+/// Adds the panel, and for its window bevy_egui's `EguiPlugin` where that isn't there yet.
+///
+/// A game that adds `EguiPlugin` itself, directly or with another plugin, has to do so before this one: Bevy takes no
+/// plugin twice.
+#[derive(Clone, Copy, Debug)]
+pub struct ClothPanelPlugin {
+    /// Shows and hides the panel, unless somebody types into egui. `None` for no key.
+    pub key: Option<KeyCode>,
+    /// Shown from the beginning.
+    pub open: bool,
+    /// The panel has a window of its own. Without one, a game calls [`cloth_panel`] where it wants the content.
+    pub window: bool,
+}
+
+impl Default for ClothPanelPlugin {
+    /// A window that F1 opens.
+    fn default() -> Self {
+        Self { key: Some(KeyCode::F1), open: false, window: true }
+    }
+}
+
+/// The panel. A game may show and hide it, and choose what it edits, as when a cloth is clicked at.
+#[derive(Resource, Debug, Default)]
+pub struct ClothPanel {
+    /// Whether the window is shown.
+    pub open: bool,
+    /// Which cloth is shown and edited.
+    pub choice: ClothChoice,
+    memory: Memory,
+}
+
+/// Which cloth the panel shows and edits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub enum ClothChoice {
+    /// The first by name. Also where the chosen one is gone.
+    #[default]
+    First,
+    /// This one.
+    One(Entity),
+    /// All: an edit writes the value that was edited to every one of them.
+    All,
+}
+
+impl Plugin for ClothPanelPlugin {
+    fn build(&self, app: &mut App) {
+        if self.window && !app.is_plugin_added::<EguiPlugin>() {
+            app.add_plugins(EguiPlugin::default());
+        }
+        app.insert_resource(ClothPanel { open: self.open, ..default() })
+            .add_systems(First, memory::begin_frame.after(TimeSystems))
+            .add_systems(PreUpdate, loaded::remember.after(ClothSystems::Prepare));
+        if let Some(key) = self.key {
+            app.add_systems(Update, toggle(key));
+        }
+        if self.window {
+            app.add_systems(EguiPrimaryContextPass, show_window);
+        }
+    }
+
+    fn finish(&self, app: &mut App) {
+        let schedule = app.get_added_plugins::<ClothPlugin>().first().map(|plugin| plugin.schedule());
+        if let Some(schedule) = schedule {
+            app.add_systems(schedule, memory::note_step.in_set(ClothSystems::Finalize));
+        } else {
+            warn!("ClothPanelPlugin can't do its work: it needs ClothPlugin; add it to the app");
+        }
+    }
+}
+
+fn toggle(
+    key: KeyCode,
+) -> impl FnMut(Option<Res<ButtonInput<KeyCode>>>, Option<Res<EguiWantsInput>>, ResMut<ClothPanel>) {
+    move |keys, egui, mut panel| {
+        let is_typing = egui.is_some_and(|egui| egui.wants_keyboard_input());
+        if keys.is_some_and(|keys| keys.just_pressed(key)) && !is_typing {
+            panel.open ^= true;
+        }
+    }
+}
+
+fn show_window(world: &mut World, contexts: &mut bevy::ecs::system::SystemState<EguiContexts>) -> Result {
+    if !world.resource::<ClothPanel>().open {
+        return Ok(());
+    }
+    let context = contexts.get_mut(world)?.ctx_mut()?.clone();
+    let mut is_open = true;
+    Window::new("Cloth")
+        .id(egui::Id::new("bevy_drape panel"))
+        .default_size(SIZE)
+        .vscroll(true)
+        .open(&mut is_open)
+        // Beside the scroll bar.
+        .show(&context, |ui| {
+            Frame::new().inner_margin(Margin { right: 6, ..default() }).show(ui, |ui| cloth_panel(ui, world))
+        });
+    if !is_open {
+        world.resource_mut::<ClothPanel>().open = false;
+    }
+    Ok(())
+}
+
+/// Draws the panel's content and does what its controls say. For a game's own egui; [`ClothPanelPlugin`] has to be there
+/// all the same, without its window.
+///
+/// Edits act in the next step. A component is written only where a value has been changed.
+pub fn cloth_panel(ui: &mut Ui, world: &mut World) {
+    // Taken out, not borrowed: what an edit sets off may look at the panel.
+    let mut panel = world.get_resource_or_init::<ClothPanel>();
+    let mut memory = core::mem::take(&mut panel.bypass_change_detection().memory);
+    let choice = panel.choice;
+    memory.shown_for = 2;
+
+    let mut model = Model::read(world, choice, &mut memory);
+    if memory.chosen != model.chosen {
+        memory.chosen.clone_from(&model.chosen);
+        memory.step_times.clear();
+        memory.frame = None;
+    }
+    // egui may draw a frame more than once.
+    let frame = ui.ctx().cumulative_frame_nr();
+    if memory.frame != Some(frame) {
+        memory.frame = Some(frame);
+        watch::measure(world, &mut memory);
+    }
+    model.readings.clone_from(&memory.readings);
+    let before = model.settings.clone();
+    let id = ui.id().with("bevy_drape panel");
+    ui.scope_builder(UiBuilder::new().id(id), |ui| show(ui, &mut model, &memory));
+    let choice = model.choice;
+    model.write(world, &before, &mut memory);
+
+    let mut panel = world.get_resource_or_init::<ClothPanel>();
+    panel.bypass_change_detection().memory = memory;
+    if panel.choice != choice {
+        panel.choice = choice;
+    }
+}
+
+fn show(ui: &mut Ui, model: &mut Model, memory: &Memory) {
+    actions::show_choice(ui, model);
+    actions::show_status(ui, model);
+    actions::show_clock(ui, model);
+    if !model.chosen.is_empty() {
+        actions::show_buttons(ui, model);
+        tuning::show_fabric(ui, model);
+        tuning::show_solver(ui, model);
+    }
+    surroundings::show_surroundings(ui, model);
+    surroundings::show_wind(ui, model);
+    if !model.chosen.is_empty() {
+        readings::show(ui, model, &memory.step_times);
+    }
+    #[cfg(feature = "debug")]
+    debug::show(ui, model);
+}

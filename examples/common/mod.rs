@@ -28,6 +28,8 @@ use clap::Parser;
 
 use arguments::Arguments;
 use capture::CapturePlugin;
+#[cfg(feature = "picking")]
+pub use scenery::rest_camera_while_dragging;
 pub use scenery::{spawn_camera, spawn_ground, spawn_scenery, spawn_sky, spawn_sun};
 pub use studio::Studio;
 pub use weave::{fabric_material, woven, woven_normals};

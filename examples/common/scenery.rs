@@ -74,6 +74,17 @@ pub fn spawn_camera(commands: &mut Commands, eye: Vec3, look_at: Vec3) -> Entity
         .id()
 }
 
+/// The camera turns with the same button that drags cloth: it rests while any is held.
+#[cfg(feature = "picking")]
+pub fn rest_camera_while_dragging(
+    grabs: Res<bevy_drape::prelude::PointerGrabs>,
+    mut cameras: Query<&mut PanOrbitCamera>,
+) {
+    for mut camera in &mut cameras {
+        camera.enabled = grabs.is_empty();
+    }
+}
+
 /// Without the light of sky and ground, the sides away from the sun would be black.
 fn light_by_sky(mut camera: EntityWorldMut) {
     let sky = camera.world_scope(|world| EnvironmentMapLight {

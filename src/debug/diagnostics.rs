@@ -1,0 +1,64 @@
+//! Numbers for Bevy's diagnostics: its log and overlays show them.
+
+use bevy::{
+    diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic},
+    prelude::*,
+};
+
+use crate::{
+    cloth::ClothStatus,
+    schedule::{ClothPlugin, ClothSystems},
+    state::ClothState,
+};
+
+/// Measures all cloths for Bevy's diagnostics, once each time that they step: none while time stands still, several in a
+/// frame of several steps.
+///
+/// Needs [`ClothPlugin`]; without it it does nothing and says so.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ClothDiagnosticsPlugin;
+
+impl ClothDiagnosticsPlugin {
+    /// Time that the step took, ms: the sum over all cloths. The clock shows less where they step side by side.
+    pub const STEP_TIME: DiagnosticPath = DiagnosticPath::const_new("cloth/step_time");
+    /// Number of cloths that are simulated.
+    pub const CLOTHS: DiagnosticPath = DiagnosticPath::const_new("cloth/cloths");
+    /// Number of their particles.
+    pub const PARTICLES: DiagnosticPath = DiagnosticPath::const_new("cloth/particles");
+    /// Number of contacts in the step's last substep: pairs of a particle and an obstacle.
+    pub const CONTACTS: DiagnosticPath = DiagnosticPath::const_new("cloth/contacts");
+}
+
+impl Plugin for ClothDiagnosticsPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_diagnostic(Diagnostic::new(Self::STEP_TIME).with_suffix("ms"))
+            .register_diagnostic(Diagnostic::new(Self::CLOTHS))
+            .register_diagnostic(Diagnostic::new(Self::PARTICLES))
+            .register_diagnostic(Diagnostic::new(Self::CONTACTS));
+    }
+
+    /// Only now is it known when cloths step, whichever plugin was added first.
+    fn finish(&self, app: &mut App) {
+        match app.get_added_plugins::<ClothPlugin>().first().map(|plugin| plugin.schedule()) {
+            Some(schedule) => drop(app.add_systems(schedule, measure.in_set(ClothSystems::Finalize))),
+            None => warn!("ClothDiagnosticsPlugin can't do its work: it needs ClothPlugin; add it to the app"),
+        }
+    }
+}
+
+fn measure(mut diagnostics: Diagnostics, cloths: Query<(&ClothState, &ClothStatus)>, time: Res<Time>) {
+    // No cloth steps then.
+    if time.delta_secs() <= 0.0 {
+        return;
+    }
+    let ready = || cloths.iter().filter(|(_, status)| **status == ClothStatus::Ready).map(|(state, _)| state);
+    let contacts = |state: &ClothState| state.report().map_or(0.0, |report| f64::from(report.contacts));
+    diagnostics.add_measurement(&ClothDiagnosticsPlugin::STEP_TIME, || {
+        ready().map(|state| state.step_time().as_secs_f64() * 1e3).sum()
+    });
+    diagnostics.add_measurement(&ClothDiagnosticsPlugin::CLOTHS, || ready().count() as f64);
+    diagnostics.add_measurement(&ClothDiagnosticsPlugin::PARTICLES, || {
+        ready().map(|state| state.particle_count() as f64).sum()
+    });
+    diagnostics.add_measurement(&ClothDiagnosticsPlugin::CONTACTS, || ready().map(contacts).sum());
+}

@@ -1,0 +1,73 @@
+//! Settings field by field: an edit writes what was edited and nothing else.
+
+use bevy::{
+    ecs::component::Mutable,
+    prelude::*,
+    reflect::{PartialReflect, structs::Struct},
+};
+
+/// Whether two fields have the same value. NaN is the same as NaN: nobody has edited that.
+pub(super) fn same(a: &dyn PartialReflect, b: &dyn PartialReflect) -> bool {
+    let is_nan = |value: &dyn PartialReflect| value.try_downcast_ref::<f32>().is_some_and(|value| value.is_nan());
+    a.reflect_partial_eq(b) == Some(true) || is_nan(a) && is_nan(b)
+}
+
+/// Indices of the fields that differ.
+pub(super) fn differing<T: Struct>(a: &T, b: &T) -> impl Iterator<Item = usize> {
+    (0..a.field_len()).filter(|&i| match (a.field_at(i), b.field_at(i)) {
+        (Some(a), Some(b)) => !same(a, b),
+        _ => false,
+    })
+}
+
+/// Writes the fields in which `after` differs from `before` into an entity's component. True where that changed it.
+pub(super) fn write<T>(world: &mut World, entity: Entity, before: &T, after: &T) -> bool
+where
+    T: Component<Mutability = Mutable> + Struct,
+{
+    let Some(mut component) = world.get_mut::<T>(entity) else { return false };
+    let mut is_changed = false;
+    for i in differing(before, after) {
+        let (Some(new), Some(old)) = (after.field_at(i), component.field_at(i)) else { continue };
+        if !same(new, old)
+            && let Some(field) = component.field_at_mut(i)
+        {
+            is_changed |= field.try_apply(new).is_ok();
+        }
+    }
+    is_changed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prelude::*;
+
+    #[test]
+    fn only_what_was_edited_is_written() {
+        let mut world = World::new();
+        let other = Fabric { density: 0.5, friction: 0.9, ..default() };
+        let entity = world.spawn(other.clone()).id();
+        let before = Fabric::default();
+        let after = Fabric { friction: 0.1, ..before.clone() };
+        assert!(write(&mut world, entity, &before, &after));
+        assert_eq!(world.get(entity), Some(&Fabric { friction: 0.1, ..other }));
+    }
+
+    #[test]
+    fn what_is_there_already_is_no_change() {
+        let mut world = World::new();
+        let entity = world.spawn(Cloth { tether_slack: None, ..default() }).id();
+        world.clear_trackers();
+        let (before, after) = (Cloth::default(), Cloth { tether_slack: None, ..default() });
+        assert!(!write(&mut world, entity, &before, &after));
+        assert!(!world.entity(entity).get_ref::<Cloth>().is_some_and(|cloth| cloth.is_changed()));
+    }
+
+    #[test]
+    fn a_nan_that_nobody_has_edited_is_left_alone() {
+        let nan = Fabric { lift: f32::NAN, ..default() };
+        assert_eq!(differing(&nan, &nan.clone()).count(), 0);
+        assert_eq!(differing(&nan, &Fabric::default()).collect::<Vec<_>>(), [11]);
+    }
+}

@@ -1,0 +1,152 @@
+//! Measures the chosen cloths once a frame, and how they have fared over the last second.
+
+use std::collections::VecDeque;
+
+use bevy::prelude::*;
+
+use super::{
+    advice::{self, Situation},
+    memory::{Memory, Readings},
+};
+use crate::{
+    cloth::{Cloth, ClothGravity, ClothSolver, ClothStatus},
+    solver::{SpringKind, Strain},
+    state::ClothState,
+};
+
+/// How far back a watch looks, s.
+const SPAN: f64 = 1.0;
+/// From when on it tells, s.
+const SHORTEST: f64 = 0.5;
+
+/// A cloth's stretch over the last second.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Watch {
+    /// Time in s, largest strain, overload.
+    samples: VecDeque<(f64, f32, f32)>,
+}
+
+impl Watch {
+    /// Adds a sample. `None` for a moment that tells nothing.
+    pub fn note(&mut self, now: f64, sample: Option<(f32, f32)>) {
+        // Time stands still, or has been set back.
+        match self.samples.back() {
+            Some(&(latest, ..)) if now == latest => return,
+            Some(&(latest, ..)) if now < latest => self.samples.clear(),
+            _ => {}
+        }
+        match sample {
+            Some((strain, overload)) => self.samples.push_back((now, strain, overload)),
+            None => self.samples.clear(),
+        }
+        while self.samples.front().is_some_and(|&(then, ..)| now - then > SPAN) {
+            self.samples.pop_front();
+        }
+    }
+
+    /// Medians of strain and overload, once there are enough samples: a jerk is over before that.
+    pub fn medians(&self) -> Option<(f32, f32)> {
+        let (first, last) = (self.samples.front()?, self.samples.back()?);
+        let median = |value: fn(&(f64, f32, f32)) -> f32| {
+            let mut values: Vec<f32> = self.samples.iter().map(value).collect();
+            values.sort_unstable_by(f32::total_cmp);
+            values[values.len() / 2]
+        };
+        (last.0 - first.0 >= SHORTEST).then(|| (median(|sample| sample.1), median(|sample| sample.2)))
+    }
+}
+
+/// Measures all chosen cloths.
+pub(super) fn measure(world: &World, memory: &mut Memory) {
+    let gravity = world.get_resource::<ClothGravity>().map_or(Vec3::ZERO, |gravity| gravity.0);
+    let gravity = if gravity.is_finite() { gravity } else { Vec3::ZERO };
+    let now = world.get_resource::<Time>().map_or(0.0, Time::elapsed_secs_f64);
+    let mut readings = Readings::default();
+    memory.watches.retain(|cloth, _| memory.chosen.contains(cloth));
+    for &cloth in &memory.chosen {
+        let Some(state) = world.get::<ClothState>(cloth) else { continue };
+        if world.get::<ClothStatus>(cloth) != Some(&ClothStatus::Ready) {
+            continue;
+        }
+        let strain = state.strain();
+        let kinetic = add(&mut readings, state, strain, gravity);
+        let watch = memory.watches.entry(cloth).or_default();
+        let overload = advice::overload(state, gravity, kinetic);
+        watch.note(now, overload.map(|overload| (strain.largest, overload)));
+        let advice = situation(state, watch, memory.step).and_then(|situation| advice::advise(&situation));
+        readings.advice.extend(advice.map(|advice| (cloth, advice)));
+    }
+    readings.mean_strain /= readings.particles.max(1) as f32;
+    memory.readings = readings;
+}
+
+/// Adds the numbers of one cloth. Gives its kinetic energy, J.
+fn add(readings: &mut Readings, state: &ClothState, strain: Strain, gravity: Vec3) -> f32 {
+    let energy = state.energy(gravity);
+    let (substeps, contacts) = state.report().map_or((0, 0), |report| (report.substeps, report.contacts));
+    readings.particles += state.particle_count();
+    readings.springs += state.topology().springs.len();
+    readings.substeps = readings.substeps.max(substeps);
+    readings.contacts += contacts;
+    readings.largest_strain = readings.largest_strain.max(strain.largest);
+    readings.mean_strain += strain.mean * state.particle_count() as f32;
+    readings.kinetic += energy.kinetic;
+    readings.elastic += energy.elastic;
+    readings.total += energy.total();
+    energy.kinetic
+}
+
+fn situation(state: &ClothState, watch: &Watch, step: f32) -> Option<Situation> {
+    let Cloth { solver, substeps, max_substeps, tether_slack, .. } = state.settings;
+    let stiffness_scale = match solver {
+        ClothSolver::Xpbd => 1.0,
+        ClothSolver::Explicit => state.report()?.stiffness_scale,
+    };
+    let (strain, overload) = watch.medians().unwrap_or_default();
+    Some(Situation {
+        solver,
+        substeps,
+        max_substeps,
+        has_tethers: tether_slack.is_some(),
+        stiffness: state.material?.spring(SpringKind::Structural).stiffness,
+        stiffness_scale,
+        needed: if stiffness_scale < 1.0 { advice::needed_substeps(state, step) } else { substeps },
+        strain,
+        overload,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians_need_half_a_second_and_forget_after_one() {
+        let mut watch = Watch::default();
+        for frame in 0..30 {
+            watch.note(f64::from(frame) / 60.0, Some((0.1, 9.0)));
+        }
+        assert_eq!(watch.medians(), None);
+        for frame in 30..60 {
+            watch.note(f64::from(frame) / 60.0, Some((0.1, 9.0)));
+        }
+        assert_eq!(watch.medians(), Some((0.1, 9.0)));
+        for frame in 60..125 {
+            watch.note(f64::from(frame) / 60.0, Some((0.01, 1.0)));
+        }
+        assert_eq!(watch.medians(), Some((0.01, 1.0)));
+        assert!(watch.samples.len() <= 61);
+    }
+
+    #[test]
+    fn a_jerk_isnt_a_median_and_a_hand_begins_anew() {
+        let mut watch = Watch::default();
+        for frame in 0..60 {
+            let sample = if frame % 10 == 0 { (5.0, 50.0) } else { (0.01, 1.0) };
+            watch.note(f64::from(frame) / 60.0, Some(sample));
+        }
+        assert_eq!(watch.medians(), Some((0.01, 1.0)));
+        watch.note(1.0, None);
+        assert_eq!(watch.medians(), None);
+    }
+}

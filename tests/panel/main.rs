@@ -1,0 +1,17 @@
+//! What the panel does, driven by pointer and keys through its accessibility tree: one module per behaviour.
+
+#![cfg(feature = "panel")]
+
+mod common;
+
+mod bad_numbers;
+mod choice;
+mod clipboard;
+mod clock;
+mod edits;
+mod hovers;
+mod inspector;
+mod revert;
+mod warnings;
+mod window;
+mod winds;
