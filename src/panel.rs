@@ -17,14 +17,18 @@ mod code;
 mod control;
 #[cfg(feature = "debug")]
 mod debug;
+mod fabric;
 mod fields;
+mod knob;
+mod list;
 mod loaded;
 mod memory;
 mod model;
 mod number;
 mod readings;
+mod settings;
+mod solver;
 mod surroundings;
-mod tuning;
 mod watch;
 
 use bevy::{prelude::*, time::TimeSystems};
@@ -186,8 +190,8 @@ fn show(ui: &mut Ui, model: &mut Model, memory: &Memory) {
     actions::show_clock(ui, model);
     if !model.chosen.is_empty() {
         actions::show_buttons(ui, model);
-        tuning::show_fabric(ui, model);
-        tuning::show_solver(ui, model);
+        fabric::show(ui, model);
+        solver::show(ui, model);
     }
     surroundings::show_surroundings(ui, model);
     surroundings::show_wind(ui, model);

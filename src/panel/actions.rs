@@ -4,22 +4,20 @@ use bevy_egui::egui::{Label, RichText, Ui};
 
 use super::{
     ClothChoice,
-    control::{Knob, Naming, Scale, button, buttons, choice, entry, explain, menu, naming, row},
+    control::{Naming, button, buttons, choice, entry, explain, menu, naming, row},
+    knob::Knob,
     model::{Ask, Model},
 };
 use crate::pins::{ClothEdge, Pins};
 
-const SPEED: Knob = Knob {
-    naming: naming(
-        "Game speed",
-        "Speed of the whole game's clock, not of cloth alone: 1 is real time, 0.1 slow motion. \
-        0.05 to 2.",
-    ),
-    unit: "×",
-    range: (0.02, 2.0),
-    scale: Scale::Logarithmic(0.02),
-    limits: (0.001, 10.0),
-};
+const SPEED: Knob = Knob::new(
+    "Game speed",
+    "×",
+    (0.02, 2.0),
+    (0.001, 10.0),
+    "Speed of the whole game's clock, not of cloth alone: 1 is real time, 0.1 slow motion. 0.05 to 2.",
+)
+.logarithmic(0.02);
 
 /// The choice of a cloth.
 pub(super) fn show_choice(ui: &mut Ui, model: &mut Model) {

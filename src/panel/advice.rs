@@ -12,7 +12,7 @@ use crate::{
 /// Stretch along a thread that can be seen, no unit.
 const VISIBLE: f32 = 0.03;
 /// How many times what pulls at the cloth its threads may seem to carry.
-const EXCESS: f32 = 2.0;
+const EXCESS: f32 = 1.6;
 /// The stretch of a position solve that is too coarse falls with this power of the substeps. 2 is the order of the
 /// time step; a long chain needs a few steps to pass a pull on.
 const RATE: f32 = 1.5;
@@ -151,30 +151,6 @@ fn are_pins_apart(state: &ClothState) -> bool {
             .iter()
             .any(|(other_now, other_rest)| now.distance(*other_now) > 1.01 * rest.distance(*other_rest) + 1e-4)
     })
-}
-
-/// Substeps that the explicit solver needs for the whole stiffness in a step of `dt` seconds: its own bound, without the
-/// limit.
-pub(super) fn needed_substeps(state: &ClothState, dt: f32) -> u32 {
-    /// As the solver has it.
-    const STABLE: f32 = 3.6;
-    let Some(material) = state.material else { return 1 };
-    let mut sums = vec![(0.0_f32, 0.0_f32); state.particle_count()];
-    for kind in SpringKind::ALL {
-        let constants = material.spring(kind);
-        for particle in state.topology.springs_of(kind).flat_map(|spring| [spring.a, spring.b]) {
-            let (k, c) = &mut sums[particle as usize];
-            *k += constants.stiffness;
-            *c += constants.damping;
-        }
-    }
-    let (mut omega_squared, mut gamma) = (0.0_f32, 0.0_f32);
-    for (&w, &(k, c)) in state.particles.inverse_mass.iter().zip(&sums) {
-        omega_squared = omega_squared.max(2.0 * k * w);
-        gamma = gamma.max(2.0 * c * w);
-    }
-    let longest = STABLE / (gamma + (gamma * gamma + STABLE * omega_squared).sqrt());
-    (dt / longest).ceil().max(1.0) as u32
 }
 
 #[cfg(test)]

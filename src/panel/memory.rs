@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use bevy::{platform::collections::HashMap, prelude::*};
 
 use super::{ClothPanel, advice::Advice, aim::Aim, watch::Watch};
-use crate::{cloth::ClothStatus, solver::MAX_TIME_STEP, state::ClothState};
+use crate::{cloth::ClothStatus, state::ClothState};
 
 /// Steps whose time is remembered.
 const STEPS: usize = 300;
@@ -24,8 +24,6 @@ pub(super) struct Memory {
     pub chosen: Vec<Entity>,
     /// Time of the latest steps of the chosen cloths, ms.
     pub step_times: VecDeque<f32>,
-    /// Duration of the latest step, s.
-    pub step: f32,
     /// How each chosen cloth has fared.
     pub watches: HashMap<Entity, Watch>,
     pub readings: Readings,
@@ -87,7 +85,6 @@ pub(super) fn note_step(mut panel: ResMut<ClothPanel>, cloths: Query<(&ClothStat
     let ready = memory.chosen.iter().filter_map(|&cloth| cloths.get(cloth).ok());
     let ready = ready.filter(|(_, status)| **status == ClothStatus::Ready);
     let total: f32 = ready.map(|(state, _)| state.step_time().as_secs_f32() * 1e3).sum();
-    memory.step = time.delta_secs().min(MAX_TIME_STEP);
     if memory.step_times.len() == STEPS {
         memory.step_times.pop_front();
     }

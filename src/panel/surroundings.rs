@@ -3,86 +3,80 @@
 use bevy_egui::egui::Ui;
 
 use super::{
-    control::{Knob, Scale, button, buttons, choice, naming, section, vector},
+    control::{button, buttons, choice, naming, section},
+    knob::Knob,
     model::{Ask, Model},
-    tuning::{AIR_DENSITY, GRAVITY_SCALE},
 };
 
-const GRAVITY: Knob = Knob {
-    naming: naming(
-        "Gravity, m/s²",
-        "Gravity on all cloth along X, Y and Z, in m/s². Earth's is -9.81 along Y, the moon's -1.62.",
-    ),
-    unit: "",
-    range: (-20.0, 20.0),
-    scale: Scale::Linear,
-    limits: (-1e3, 1e3),
-};
-const HEADING: Knob = Knob {
-    naming: naming(
-        "Heading",
-        "Where the wind blows to, seen from above, in degrees: 0 along +Z, 90 along +X, as a \
-        rotation about Y turns. The wind's entity turns it further.",
-    ),
-    unit: "°",
-    range: (-180.0, 180.0),
-    scale: Scale::Linear,
-    limits: (-360.0, 360.0),
-};
-const ELEVATION: Knob = Knob {
-    naming: naming("Elevation", "How steeply the wind blows upwards, in degrees. 0 for along the ground."),
-    unit: "°",
-    range: (-90.0, 90.0),
-    scale: Scale::Linear,
-    limits: (-90.0, 90.0),
-};
-const SPEED: Knob = Knob {
-    naming: naming(
-        "Wind speed",
-        "Mean speed in m/s. 2 is a light breeze, 8 a fresh one, 20 a gale. From about 3 on, \
-        wind lifts light cloth that only lies on something.",
-    ),
-    unit: "m/s",
-    range: (0.0, 30.0),
-    scale: Scale::Linear,
-    limits: (0.0, 200.0),
-};
-const GUSTS: Knob = Knob {
-    naming: naming(
-        "Gusts",
-        "Strength of gusts as a share of the mean speed. 0 for none, 0.5 for gusty, 1 for calm to \
-        double.",
-    ),
-    unit: "",
-    range: (0.0, 1.5),
-    scale: Scale::Linear,
-    limits: (0.0, 10.0),
-};
-const GUST_PERIOD: Knob = Knob {
-    naming: naming("Gust period", "Time from gust to gust in s. 2 to 10."),
-    unit: "s",
-    range: (0.5, 20.0),
-    scale: Scale::Logarithmic(0.5),
-    limits: (0.01, 1e4),
-};
-const TURBULENCE: Knob = Knob {
-    naming: naming(
-        "Turbulence",
-        "Strength of eddies as a share of the mean speed. 0 for none, 0.1 over open land, 0.3 \
-        in a town.",
-    ),
-    unit: "",
-    range: (0.0, 1.0),
-    scale: Scale::Linear,
-    limits: (0.0, 10.0),
-};
-const EDDY_SIZE: Knob = Knob {
-    naming: naming("Eddy size", "Size of the eddies in m. 0.3 to 5: small ones ripple the cloth, large ones sway it."),
-    unit: "m",
-    range: (0.1, 10.0),
-    scale: Scale::Logarithmic(0.1),
-    limits: (0.01, 1e4),
-};
+const GRAVITY: Knob = Knob::new(
+    "Gravity, m/s²",
+    "",
+    (-20.0, 20.0),
+    (-1e3, 1e3),
+    "Gravity on all cloth along X, Y and Z, in m/s². Earth's is -9.81 along Y, the moon's -1.62.",
+);
+const GRAVITY_SCALE: Knob = Knob::new(
+    "Gravity scale",
+    "",
+    (-1.0, 3.0),
+    (-1e3, 1e3),
+    "Factor on gravity for this cloth, without a unit. 1 for most; 0 floats, negative rises.",
+);
+const AIR_DENSITY: Knob = Knob::new(
+    "Air density",
+    "kg/m³",
+    (0.0, 3.0),
+    (0.0, 1e3),
+    "Density of the air around, in kg/m³: how hard wind pushes and how much still air brakes. 1.225 at sea level, 0 for \
+     a vacuum.",
+);
+const HEADING: Knob = Knob::new(
+    "Heading",
+    "°",
+    (-180.0, 180.0),
+    (-360.0, 360.0),
+    "Where the wind blows to, seen from above, in degrees: 0 along +Z, 90 along +X, as a rotation about Y turns. The \
+     wind's entity turns it further.",
+);
+const ELEVATION: Knob = Knob::new(
+    "Elevation",
+    "°",
+    (-90.0, 90.0),
+    (-90.0, 90.0),
+    "How steeply the wind blows upwards, in degrees. 0 for along the ground.",
+);
+const SPEED: Knob = Knob::new(
+    "Wind speed",
+    "m/s",
+    (0.0, 30.0),
+    (0.0, 200.0),
+    "Mean speed in m/s. 2 is a light breeze, 8 a fresh one, 20 a gale. From about 3 on, wind lifts light cloth that only \
+     lies on something.",
+);
+const GUSTS: Knob = Knob::new(
+    "Gusts",
+    "",
+    (0.0, 1.5),
+    (0.0, 10.0),
+    "Strength of gusts as a share of the mean speed. 0 for none, 0.5 for gusty, 1 for calm to double.",
+);
+const GUST_PERIOD: Knob =
+    Knob::new("Gust period", "s", (0.5, 20.0), (0.01, 1e4), "Time from gust to gust in s. 2 to 10.").logarithmic(0.5);
+const TURBULENCE: Knob = Knob::new(
+    "Turbulence",
+    "",
+    (0.0, 1.0),
+    (0.0, 10.0),
+    "Strength of eddies as a share of the mean speed. 0 for none, 0.1 over open land, 0.3 in a town.",
+);
+const EDDY_SIZE: Knob = Knob::new(
+    "Eddy size",
+    "m",
+    (0.1, 10.0),
+    (0.01, 1e4),
+    "Size of the eddies in m. 0.3 to 5: small ones ripple the cloth, large ones sway it.",
+)
+.logarithmic(0.1);
 
 /// Gravity and the air around.
 pub(super) fn show_surroundings(ui: &mut Ui, model: &mut Model) {
@@ -91,7 +85,7 @@ pub(super) fn show_surroundings(ui: &mut Ui, model: &mut Model) {
     section(ui, naming, false, |ui| {
         if let Some(gravity) = &mut settings.gravity {
             let mut values = gravity.to_array();
-            if vector(ui, &GRAVITY, &mut values) {
+            if GRAVITY.show_vector(ui, &mut values) {
                 *gravity = values.into();
             }
         }

@@ -73,7 +73,7 @@ pub(super) fn measure(world: &World, memory: &mut Memory) {
         let watch = memory.watches.entry(cloth).or_default();
         let overload = advice::overload(state, gravity, kinetic);
         watch.note(now, overload.map(|overload| (strain.largest, overload)));
-        let advice = situation(state, watch, memory.step).and_then(|situation| advice::advise(&situation));
+        let advice = situation(state, watch).and_then(|situation| advice::advise(&situation));
         readings.advice.extend(advice.map(|advice| (cloth, advice)));
     }
     readings.mean_strain /= readings.particles.max(1) as f32;
@@ -96,7 +96,7 @@ fn add(readings: &mut Readings, state: &ClothState, strain: Strain, gravity: Vec
     energy.kinetic
 }
 
-fn situation(state: &ClothState, watch: &Watch, step: f32) -> Option<Situation> {
+fn situation(state: &ClothState, watch: &Watch) -> Option<Situation> {
     let Cloth { solver, substeps, max_substeps, tether_slack, .. } = state.settings;
     let stiffness_scale = match solver {
         ClothSolver::Xpbd => 1.0,
@@ -110,7 +110,7 @@ fn situation(state: &ClothState, watch: &Watch, step: f32) -> Option<Situation> 
         has_tethers: tether_slack.is_some(),
         stiffness: state.material?.spring(SpringKind::Structural).stiffness,
         stiffness_scale,
-        needed: if stiffness_scale < 1.0 { advice::needed_substeps(state, step) } else { substeps },
+        needed: state.report().map_or(substeps, |report| report.needed_substeps),
         strain,
         overload,
     })

@@ -61,6 +61,8 @@ pub struct StepContext<'a> {
 pub struct StepReport {
     /// Substeps taken.
     pub substeps: u32,
+    /// Substeps that [`Method::Explicit`] would have needed for the whole stiffness and damping; else those taken.
+    pub needed_substeps: u32,
     /// Share of the asked stiffness and damping that was used, 0..=1. Below one when [`Method::Explicit`] would have
     /// needed more than [`StepContext::max_substeps`] substeps for the whole.
     pub stiffness_scale: f32,

@@ -8,8 +8,8 @@ use super::{Material, Particles, Scratch, Spring, SpringConstants, StepContext, 
 /// is bent out of its rest shape.
 const STABLE: f32 = 3.6;
 
-/// Substeps that keep a step of `dt` seconds stable, and the share of stiffness and damping that they can carry: 1
-/// unless more than `ctx.max_substeps` would be needed.
+/// Substeps that keep a step of `dt` seconds stable, and the share of stiffness and damping that `ctx.max_substeps` of
+/// them can carry: 1 unless more would be needed.
 ///
 /// Symplectic Euler of x'' = -ω² x - γ x' is stable while ω² h² + 2 γ h < 4, kept below [`STABLE`] here. The largest ω²
 /// and γ of the whole cloth are bounded by Gershgorin's circles, twice the sum over a particle's springs of k/m and of
@@ -35,7 +35,7 @@ pub(super) fn stable_substeps(
         return (needed as u32, 1.0);
     }
     let h = dt / most as f32;
-    (most, STABLE / (omega_squared * h * h + 2.0 * gamma * h))
+    (needed as u32, STABLE / (omega_squared * h * h + 2.0 * gamma * h))
 }
 
 /// Adds up stiffness and damping of the springs at each particle.

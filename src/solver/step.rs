@@ -27,13 +27,17 @@ const AIR_RATE: f32 = 160.0;
 pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, scratch: &mut Scratch) -> StepReport {
     let dt = ctx.dt.min(MAX_TIME_STEP);
     if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
-        return StepReport { substeps: 0, stiffness_scale: 1.0, contacts: 0 };
+        return StepReport { substeps: 0, needed_substeps: 0, stiffness_scale: 1.0, contacts: 0 };
     }
     scratch.fit(topology);
     grab::take_up(particles, ctx.grabs, &mut scratch.held);
-    let (substeps, stiffness_scale) = match ctx.method {
+    let (needed_substeps, stiffness_scale) = match ctx.method {
         Method::Xpbd => (ctx.substeps.max(1), 1.0),
         Method::Explicit => explicit::stable_substeps(particles, topology, ctx, dt, scratch),
+    };
+    let substeps = match ctx.method {
+        Method::Xpbd => needed_substeps,
+        Method::Explicit => needed_substeps.min(ctx.max_substeps.max(1)),
     };
     let h = dt / substeps as f32;
     let decay = ops::exp(-ctx.material.damping * h);
@@ -73,7 +77,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         }
     }
     grab::put_down(particles, &scratch.held);
-    StepReport { substeps, stiffness_scale, contacts }
+    StepReport { substeps, needed_substeps, stiffness_scale, contacts }
 }
 
 /// Symplectic Euler: velocities from forces (N) and gravity (m/s²), then positions from the new velocities.
