@@ -31,7 +31,7 @@ mod solver;
 mod surroundings;
 mod watch;
 
-use bevy::{prelude::*, time::TimeSystems};
+use bevy::{ecs::system::SystemState, prelude::*, time::TimeSystems};
 use bevy_egui::{
     EguiContexts, EguiPlugin, EguiPrimaryContextPass,
     egui::{self, Frame, Margin, Ui, UiBuilder, Window},
@@ -69,7 +69,7 @@ impl Default for ClothPanelPlugin {
 /// The panel. A game may show and hide it, and choose what it edits, as when a cloth is clicked at.
 #[derive(Resource, Debug, Default)]
 pub struct ClothPanel {
-    /// Whether the window is shown.
+    /// Whether the window is shown. Without one, a game that embeds the panel may heed it.
     pub open: bool,
     /// Which cloth is shown and edited.
     pub choice: ClothChoice,
@@ -126,11 +126,13 @@ fn toggle(
     }
 }
 
-fn show_window(world: &mut World, contexts: &mut bevy::ecs::system::SystemState<EguiContexts>) -> Result {
+fn show_window(world: &mut World, contexts: &mut SystemState<EguiContexts>) {
     if !world.resource::<ClothPanel>().open {
-        return Ok(());
+        return;
     }
-    let context = contexts.get_mut(world)?.ctx_mut()?.clone();
+    // None while no camera has one.
+    let context = contexts.get_mut(world).ok().and_then(|mut contexts| contexts.ctx_mut().ok().cloned());
+    let Some(context) = context else { return };
     let mut is_open = true;
     Window::new("Cloth")
         .id(egui::Id::new("bevy_drape panel"))
@@ -144,7 +146,6 @@ fn show_window(world: &mut World, contexts: &mut bevy::ecs::system::SystemState<
     if !is_open {
         world.resource_mut::<ClothPanel>().open = false;
     }
-    Ok(())
 }
 
 /// Draws the panel's content and does what its controls say. For a game's own egui; [`ClothPanelPlugin`] has to be there

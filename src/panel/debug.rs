@@ -86,7 +86,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
             row(ui, naming, false, |ui, name| {
                 let all = ui.checkbox(switch(&mut config.view), "").labelled_by(name.id);
                 ui.add_space(6.0);
-                let own = ui.add_enabled_ui(has_cloth, |ui| ui.checkbox(switch(view), "")).inner;
+                let own = ui.add_enabled_ui(has_cloth, |ui| ui.checkbox(switch(view), "")).inner.labelled_by(name.id);
                 (name | explain(all, naming.hover) | explain(own, naming.hover), ())
             });
         }

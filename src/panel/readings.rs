@@ -6,7 +6,7 @@ use bevy_egui::egui::{Ui, Vec2b};
 use egui_plot::{HLine, Line, Plot, PlotPoints};
 
 use super::{
-    control::{explain, naming, reading, section},
+    control::{Naming, explain, naming, reading, section},
     memory::Readings,
     model::Model,
     number,
@@ -23,62 +23,45 @@ pub(super) fn show(ui: &mut Ui, model: &Model, step_times: &VecDeque<f32>) {
     });
 }
 
+const STEP_TIME: Naming = naming(
+    "Step time",
+    "Time that a step takes on its thread, in ms, and its mean over the latest 300 steps. Several cloths are added up, \
+     though they may be stepped side by side.",
+);
+const PARTICLES: Naming = naming("Particles", "Points with a mass: vertices at one place are one of them.");
+const SPRINGS: Naming = naming("Springs", "Springs of all kinds.");
+const SUBSTEPS: Naming =
+    naming("Substeps taken", "Substeps of the latest step: what the explicit solver needs, or what XPBD is told.");
+const CONTACTS: Naming = naming("Contacts", "Particles that touch an obstacle, each counted once an obstacle.");
+const LARGEST_STRAIN: Naming = naming(
+    "Largest strain",
+    "Stretch of the thread that is stretched the most, over its length. A few percent can't be seen.",
+);
+const MEAN_STRAIN: Naming =
+    naming("Mean strain", "Mean stretch of all threads; what is pressed together counts as nothing.");
+const KINETIC: Naming = naming("Kinetic", "Energy of motion, in J.");
+const ELASTIC: Naming = naming("Elastic", "Energy in the springs, in J.");
+const TOTAL: Naming = naming("Total", "Energy of motion, springs and height, in J. Only its changes mean something.");
+
 fn show_cost(ui: &mut Ui, readings: &Readings, step_times: &VecDeque<f32>) {
     let mean = step_times.iter().sum::<f32>() / step_times.len().max(1) as f32;
     let latest = step_times.back().copied().unwrap_or_default();
-    let time = naming(
-        "Step time",
-        "Time that a step takes on its thread, in ms, and its mean over the latest 300 steps. \
-        Several cloths are added up, though they may be stepped side by side.",
-    );
-    reading(ui, time, format!("{latest:.2} ms, mean {mean:.2} ms"));
+    reading(ui, STEP_TIME, format!("{latest:.2} ms, mean {mean:.2} ms"));
     plot(ui, step_times, mean);
-    reading(
-        ui,
-        naming("Particles", "Points with a mass: vertices at one place are one of them."),
-        readings.particles.to_string(),
-    );
-    reading(ui, naming("Springs", "Springs of all kinds."), readings.springs.to_string());
-    reading(
-        ui,
-        naming(
-            "Substeps taken",
-            "Substeps of the latest step: what the explicit solver needs, or what XPBD is \
-        told.",
-        ),
-        readings.substeps.to_string(),
-    );
-    reading(
-        ui,
-        naming("Contacts", "Particles that touch an obstacle, each counted once an obstacle."),
-        readings.contacts.to_string(),
-    );
+    reading(ui, PARTICLES, readings.particles.to_string());
+    reading(ui, SPRINGS, readings.springs.to_string());
+    reading(ui, SUBSTEPS, readings.substeps.to_string());
+    reading(ui, CONTACTS, readings.contacts.to_string());
 }
 
 fn show_state(ui: &mut Ui, readings: &Readings) {
     let percent = |share: f32| format!("{:.2} %", share * 100.0);
     let joules = |energy: f32| format!("{} J", number::text(energy.into()));
-    reading(
-        ui,
-        naming(
-            "Largest strain",
-            "Stretch of the thread that is stretched the most, over its length. A few \
-        percent can't be seen.",
-        ),
-        percent(readings.largest_strain),
-    );
-    reading(
-        ui,
-        naming("Mean strain", "Mean stretch of all threads; what is pressed together counts as nothing."),
-        percent(readings.mean_strain),
-    );
-    reading(ui, naming("Kinetic", "Energy of motion, in J."), joules(readings.kinetic));
-    reading(ui, naming("Elastic", "Energy in the springs, in J."), joules(readings.elastic));
-    reading(
-        ui,
-        naming("Total", "Energy of motion, springs and height, in J. Only its changes mean something."),
-        joules(readings.total),
-    );
+    reading(ui, LARGEST_STRAIN, percent(readings.largest_strain));
+    reading(ui, MEAN_STRAIN, percent(readings.mean_strain));
+    reading(ui, KINETIC, joules(readings.kinetic));
+    reading(ui, ELASTIC, joules(readings.elastic));
+    reading(ui, TOTAL, joules(readings.total));
 }
 
 /// The time of the latest steps.

@@ -8,6 +8,8 @@ mod bad_numbers;
 mod choice;
 mod clipboard;
 mod clock;
+#[cfg(feature = "debug")]
+mod drawing;
 mod edits;
 mod hovers;
 mod inspector;

@@ -89,6 +89,10 @@ fn arrows_point_with_the_wind_and_are_as_long_as_it_is_fast() {
         app.world_mut().spawn((steady(Vec3::X * 4.0), turned));
         app.world_mut().spawn(steady(Vec3::Y * 3.0));
         run(&mut app, 2);
+        // Away from the origin that its positions are relative to.
+        let at = at + Vec3::X * 2.0;
+        get_mut::<Transform>(&mut app, cloth).translation = at;
+        run(&mut app, 1);
         let bounds = drawn(&app, cloth).final_aabb.unwrap();
         assert_eq!(arrows(&app).len(), 25);
         for arrow in arrows(&app) {
