@@ -90,7 +90,7 @@ fn spawn_curtain(commands: &mut Commands, studio: &mut common::Studio) {
     let right = Pins::indices([grid.vertex(39, 0)]).to_entity(ring(1.0));
     commands.spawn((
         studio.cloth(grid, Color::srgb(0.72, 0.16, 0.14)),
-        Cloth { substeps: 12, ..default() },
+        Cloth { substeps: 24, ..default() },
         Fabric { density: 0.15, bend_stiffness: 5.0, ..default() },
         left.and(right),
         Transform::from_translation(middle - Vec3::Y * 0.93),

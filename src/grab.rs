@@ -52,7 +52,7 @@ impl ClothGrip {
     }
 }
 
-/// A hold on a cloth, from [`ClothState::grab`] to [`ClothState::release`].
+/// A hold on a cloth, from [`ClothState::grab`] to [`ClothState::release`]. The next one on that cloth is another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect)]
 #[reflect(Debug, Clone, PartialEq, Hash)]
 pub struct GrabId(u32);

@@ -24,9 +24,9 @@
 //! ```text
 //! mesh -> build -> particles and topology
 //!                           |
-//!   settings, pins, obstacles, winds -> [ forces -> springs -> tethers -> contact ] x substeps -> state
-//!                                                                                                   |
-//!                             renderer <- mesh <- normals, tangents <- interpolation <- draw <------+
+//!   settings, pins, hands, obstacles, winds -> [ forces -> springs -> hands -> tethers -> contact ] x substeps -> state
+//!                                                                                                                  |
+//!                                            renderer <- mesh <- normals, tangents <- interpolation <- draw <------+
 //! ```
 //!
 //! All quantities are in SI units: m, kg, s, N. The solver is in [`solver`] and can be used without Bevy's ECS.

@@ -1,10 +1,10 @@
 //! The section that edits what a cloth is made of.
 
 use bevy::reflect::structs::GetField;
-use bevy_egui::egui::{RichText, Ui};
+use bevy_egui::egui::Ui;
 
 use super::{
-    control::{choice, naming, section},
+    control::{Naming, choice, naming, section},
     knob::Knob,
     model::{Ask, Model},
 };
@@ -97,11 +97,8 @@ const FIELDS: [(&str, Knob); 12] = [
 pub(super) fn show(ui: &mut Ui, model: &mut Model) {
     let Some((_, fabric)) = &mut model.settings.cloth else { return };
     section(ui, naming("Fabric", "What the cloth is made of. Changes act in the next step."), true, |ui| {
-        if let Some(preset) = show_presets(ui, fabric) {
+        if let Some(preset) = show_presets(ui, fabric, model.follows_asset) {
             model.asks.push(Ask::Preset(preset));
-        }
-        if model.follows_asset {
-            ui.label(RichText::new("Follows its asset until a value is edited.").weak());
         }
         for (field, knob) in &FIELDS {
             if let Some(value) = fabric.get_field_mut::<f32>(field) {
@@ -111,12 +108,16 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
     });
 }
 
-fn show_presets(ui: &mut Ui, fabric: &Fabric) -> Option<Fabric> {
-    const HOVER: &str = "Takes all values of this fabric. They are plausible, not measured.";
+fn show_presets(ui: &mut Ui, fabric: &Fabric, follows_asset: bool) -> Option<Fabric> {
+    const PRESET: Naming = naming(
+        "Preset",
+        "Fabrics to begin with. A cloth that follows its asset does so until one is chosen or a value is edited.",
+    );
+    const ENTRY: &str = "Takes all values of this fabric. They are plausible, not measured.";
     let presets = Fabric::PRESETS;
-    let current = presets.iter().position(|(_, preset)| preset == fabric);
-    let entries: Vec<_> = presets.iter().enumerate().map(|(i, &(name, _))| (i, name, HOVER)).collect();
-    let naming = naming("Preset", "Fabrics to begin with. \"own values\" where the fabric is none of them.");
-    let chosen = choice(ui, naming, false, current, "own values", &entries)?;
+    let current = presets.iter().position(|(_, preset)| preset == fabric).filter(|_| !follows_asset);
+    let otherwise = if follows_asset { "follows its asset" } else { "own values" };
+    let entries: Vec<_> = presets.iter().enumerate().map(|(i, &(name, _))| (i, name, ENTRY)).collect();
+    let chosen = choice(ui, PRESET, false, current, otherwise, &entries)?;
     presets.into_iter().nth(chosen).map(|(_, preset)| preset)
 }

@@ -8,7 +8,11 @@ use bevy::{
         touch::{TouchInput, TouchPhase},
     },
     math::ops,
-    picking::{DefaultPickingPlugins, pointer::PointerId},
+    picking::{
+        DefaultPickingPlugins, PickingSystems,
+        backend::{HitData, PointerHits},
+        pointer::PointerId,
+    },
     prelude::*,
     window::{CursorGrabMode, CursorMoved, CursorOptions, PrimaryWindow, WindowEvent, WindowPlugin},
 };
@@ -167,6 +171,24 @@ fn the_nearest_of_two_cloths_is_grabbed_and_none_behind_something_else() {
         assert_eq!(grabs.held_by(PointerId::Mouse), expected, "at {x}");
         release(&mut app);
     }
+}
+
+#[test]
+fn a_panel_that_has_the_pointer_is_in_the_way() {
+    let mut app = with_pointer();
+    let panel = app.world_mut().spawn_empty().id();
+    // As egui does: another backend, of which all hits are in front of the scene's.
+    let hits = move |cameras: Query<Entity, With<Camera>>, mut hits: MessageWriter<PointerHits>| {
+        let hit = HitData::new(cameras.single()?, 0.0, None, None);
+        hits.write(PointerHits::new(PointerId::Mouse, vec![(panel, hit)], 1e6));
+        Ok::<_, BevyError>(())
+    };
+    app.add_systems(PreUpdate, hits.in_set(PickingSystems::Backend));
+    let cloth = curtain(&mut app);
+    let at = on_screen(&mut app, Vec3::ZERO);
+    move_mouse(&mut app, at);
+    press(&mut app);
+    assert!(!is_held(&app, cloth));
 }
 
 #[test]

@@ -187,19 +187,19 @@ fn buttons_reset_pin_and_unpin() {
 }
 
 #[test]
-fn a_slider_is_held_on_to_while_warnings_and_rows_come_and_go() {
+fn a_slider_is_held_on_to_while_rows_and_sections_come_and_go() {
     let mut app = app();
-    let cloth = spawn_cloth(&mut app, "Curtain", ());
+    let wind = app.world_mut().spawn(Wind { velocity: Vec3::Z, ..default() }).id();
     let mut desk = Desk::new(app);
-    let rect = desk.control(Role::Slider, "Air density").rect();
+    let rect = desk.control(Role::Slider, "Wind speed").rect();
     desk.harness.hover_at(rect.center());
     desk.harness.drag_at(rect.center());
     desk.harness.run();
-    *desk.get_mut::<Cloth>(cloth) = Cloth { solver: ClothSolver::Explicit, max_substeps: 1, ..default() };
+    spawn_cloth(desk.app(), "Curtain", Cloth { solver: ClothSolver::Explicit, max_substeps: 1, ..default() });
     desk.frames(3);
-    assert_ne!(desk.control(Role::Slider, "Air density").rect(), rect, "a warning has come, and a row has gone");
+    assert_ne!(desk.control(Role::Slider, "Wind speed").rect(), rect, "sections and a warning have come");
     desk.harness.hover_at(rect.right_center());
     desk.harness.run();
     desk.frame();
-    assert_eq!(desk.get::<Cloth>(cloth).fluid_density, 3.0, "the end of the slider");
+    assert_eq!(desk.get::<Wind>(wind).velocity, Vec3::Z * 30.0, "the end of the slider");
 }
