@@ -27,17 +27,29 @@ fn every_component_is_registered() {
         TypeId::of::<Cloth>(),
         TypeId::of::<ClothStatus>(),
         TypeId::of::<Fabric>(),
+        TypeId::of::<FabricHandle>(),
         TypeId::of::<Pins>(),
         TypeId::of::<ClothCollider>(),
         TypeId::of::<Wind>(),
+        #[cfg(feature = "debug")]
+        TypeId::of::<bevy_drape::debug::ClothDebugView>(),
     ];
     for component in components {
         let name = registry.get(component).expect("a component is registered").type_info().type_path();
         assert!(has::<ReflectComponent>(&registry, component), "{name} is a component");
         assert!(has::<ReflectDefault>(&registry, component), "{name} has a default");
     }
-    assert!(has::<ReflectResource>(&registry, TypeId::of::<ClothGravity>()));
-    assert!(has::<ReflectDefault>(&registry, TypeId::of::<ClothGravity>()));
+    let resources = [
+        TypeId::of::<ClothGravity>(),
+        #[cfg(feature = "picking")]
+        TypeId::of::<ClothPickingSettings>(),
+        #[cfg(feature = "debug")]
+        TypeId::of::<bevy_drape::debug::ClothDebugConfig>(),
+    ];
+    for resource in resources {
+        assert!(has::<ReflectResource>(&registry, resource));
+        assert!(has::<ReflectDefault>(&registry, resource));
+    }
 }
 
 #[test]
