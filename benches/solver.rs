@@ -72,6 +72,10 @@ fn build_stage(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("tethers", n), |bencher| {
             bencher.iter(|| build::tethers(&topology, &[0, n - 1]));
         });
+        let middle = topology.triangles[topology.triangles.len() / 2];
+        group.bench_function(BenchmarkId::new("grab_tethers", n), |bencher| {
+            bencher.iter(|| build::grab_tethers(&topology, middle, [0.2, 0.3, 0.5]));
+        });
     }
     group.finish();
 }

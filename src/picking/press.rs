@@ -26,6 +26,8 @@ pub(super) struct Sight<'w, 's> {
     cameras: Query<'w, 's, &'static GlobalTransform, With<Camera>>,
     rays: Res<'w, RayMap>,
     ray_cast: MeshRayCast<'w, 's>,
+    #[cfg(feature = "panel")]
+    egui: Query<'w, 's, &'static mut bevy_egui::EguiContext>,
 }
 
 /// Grabs the cloth that is pressed, if it is the nearest thing under the pointer.
@@ -42,6 +44,10 @@ pub(super) fn on_press(
     if is_other || !settings.enabled || grabs.held_by(pointer).is_some() || sight.turns_camera(pointer, press.button) {
         return;
     }
+    #[cfg(feature = "panel")]
+    if sight.has_egui_at(press.pointer_location.position) {
+        return;
+    }
     let Ok((mut state, mesh)) = cloths.get_mut(entity) else { return };
     let Some((hit, depth)) = sight.look(entity, pointer, camera) else { return };
     let Some(point) = point_of(&state, mesh, &hit) else { return };
@@ -56,6 +62,17 @@ impl Sight<'_, '_> {
         let is_busy = |(&id, press): (&PointerId, &PointerPress)| id == pointer && other_button(press, button);
         let is_locked = |cursor: &CursorOptions| cursor.grab_mode == CursorGrabMode::Locked;
         self.pointers.iter().any(is_busy) || pointer == PointerId::Mouse && self.cursors.iter().any(is_locked)
+    }
+
+    /// Whether egui has anything at a position, in logical pixels. It keeps pointers that it knows of away from the scene
+    /// by itself, but of a finger that has just come down it knows in the next frame only.
+    #[cfg(feature = "panel")]
+    fn has_egui_at(&mut self, position: Vec2) -> bool {
+        use bevy_egui::egui::{Order, pos2};
+        self.egui.iter_mut().any(|mut egui| {
+            let layer = egui.get_mut().layer_id_at(pos2(position.x, position.y));
+            layer.is_some_and(|layer| layer.order != Order::Background)
+        })
     }
 
     /// Where a pointer's ray hits an entity's mesh, and how far from the camera that is, m, along its view.

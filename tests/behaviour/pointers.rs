@@ -191,6 +191,31 @@ fn a_panel_that_has_the_pointer_is_in_the_way() {
     assert!(!is_held(&app, cloth));
 }
 
+#[cfg(feature = "panel")]
+#[test]
+fn a_finger_that_comes_down_on_an_egui_window_grabs_nothing_behind_it() {
+    use bevy_egui::{EguiContext, egui};
+
+    let mut app = with_pointer();
+    let cloth = curtain(&mut app);
+    let [covered, free] = [Vec3::ZERO, Vec3::new(0.3, -0.3, 0.0)].map(|place| on_screen(&mut app, place));
+    let mut context = EguiContext::default();
+    // An area is measured in its first pass and is there from the second on.
+    for _ in 0..2 {
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(800.0, 600.0));
+        context.get_mut().begin_pass(egui::RawInput { screen_rect: Some(screen), ..default() });
+        egui::Area::new(egui::Id::new("cover"))
+            .fixed_pos(egui::pos2(covered.x - 20.0, covered.y - 20.0))
+            .show(context.get_mut(), |ui| ui.allocate_space(egui::vec2(40.0, 40.0)));
+        let _ = context.get_mut().end_pass();
+    }
+    app.world_mut().spawn(context);
+    touch(&mut app, 1, TouchPhase::Started, covered);
+    assert!(!is_held(&app, cloth));
+    touch(&mut app, 2, TouchPhase::Started, free);
+    assert!(is_held(&app, cloth), "beside it");
+}
+
 #[test]
 fn the_wheel_moves_what_is_held_away_and_back() {
     let mut app = with_pointer();
