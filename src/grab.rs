@@ -14,6 +14,7 @@ use crate::{
 mod point;
 
 pub use point::ClothPoint;
+pub(crate) use point::blend;
 
 /// How firmly a hand holds a cloth. A value out of its range counts as the nearest one within.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
@@ -23,7 +24,8 @@ pub struct ClothGrip {
     pub stiffness: f32,
     /// Damping of the pull in N·s/m. 0 to 50.
     pub damping: f32,
-    /// Largest force of the pull in N. 20 for a firm hand.
+    /// Largest force of the pull in N. 20 for a firm hand. It lifts more than that: tethers carry cloth along without
+    /// weighing on the hand.
     pub max_force: f32,
     /// How fast the target may lead the cloth in m/s. 2 to 6: one that jumps is caught up with.
     pub max_speed: f32,

@@ -38,7 +38,7 @@ use bevy_egui::{
     input::EguiWantsInput,
 };
 
-use crate::schedule::{ClothPlugin, ClothSystems};
+use crate::schedule::{ClothSystems, run_after_steps};
 use memory::Memory;
 use model::Model;
 
@@ -106,12 +106,7 @@ impl Plugin for ClothPanelPlugin {
     }
 
     fn finish(&self, app: &mut App) {
-        let schedule = app.get_added_plugins::<ClothPlugin>().first().map(|plugin| plugin.schedule());
-        if let Some(schedule) = schedule {
-            app.add_systems(schedule, memory::note_step.in_set(ClothSystems::Finalize));
-        } else {
-            warn!("ClothPanelPlugin can't do its work: it needs ClothPlugin; add it to the app");
-        }
+        run_after_steps(app, "ClothPanelPlugin", memory::note_step);
     }
 }
 

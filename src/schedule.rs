@@ -71,11 +71,6 @@ impl ClothPlugin {
         self
     }
 
-    /// The schedule that cloths step in.
-    pub fn schedule(&self) -> InternedScheduleLabel {
-        self.schedule
-    }
-
     fn is_fixed(&self) -> bool {
         [
             FixedFirst.intern(),
@@ -171,6 +166,20 @@ impl Plugin for ClothPlugin {
 /// Without time or meshes there is nothing to do, and no system may ask for them.
 fn has_what_it_needs(time: Option<Res<Time>>, meshes: Option<Res<Assets<Mesh>>>) -> bool {
     time.is_some() && meshes.is_some()
+}
+
+/// Has `system` run after each step, in the schedule that [`ClothPlugin`] was given: for the `finish` of `plugin`, when
+/// that is known whichever was added first. Says so where there is none.
+#[cfg(any(feature = "debug", feature = "panel"))]
+pub(crate) fn run_after_steps<M>(
+    app: &mut App,
+    plugin: &str,
+    system: impl IntoScheduleConfigs<bevy::ecs::system::ScheduleSystem, M>,
+) {
+    match app.get_added_plugins::<ClothPlugin>().first().map(|cloth| cloth.schedule) {
+        Some(schedule) => drop(app.add_systems(schedule, system.in_set(ClothSystems::Finalize))),
+        None => warn!("{plugin} can't do its work: it needs ClothPlugin; add it to the app"),
+    }
 }
 
 /// How the plugin was set up.

@@ -11,8 +11,8 @@ use bevy::{
 use crate::{
     anchor::HeldPin,
     build::weld::NO_PARTICLE,
-    cloth::Cloth,
-    draw::carrier::Carrier,
+    cloth::{Cloth, ClothSolver},
+    draw::{carrier::Carrier, shading::particle_normals},
     grab::Grabs,
     solver::{
         self, Anchor, Energy, Grab, Material, Obstacle, Particles, Scratch, StepReport, Strain, Tether, Topology,
@@ -147,17 +147,7 @@ impl ClothState {
 
     /// World normals of all particles, unit vectors, on the side that the mesh's triangles face. Computed anew.
     pub fn normals(&self) -> Vec<Vec3> {
-        // A mirrored mesh shows its back where its triangles, in the world, seem to face.
-        let side = 1.0_f32.copysign(self.pose.matrix3.determinant());
-        let mut normals = vec![Vec3A::ZERO; self.particles.len()];
-        for triangle in &self.topology.triangles {
-            let [a, b, c] = triangle.map(|i| self.particles.position[i as usize]);
-            let doubled_area = (b - a).cross(c - a);
-            for &particle in triangle {
-                normals[particle as usize] += doubled_area;
-            }
-        }
-        normals.into_iter().map(|normal| (normal.normalize_or_zero() * side).into()).collect()
+        particle_normals(&self.topology.triangles, &self.particles.position, &self.pose.matrix3).collect()
     }
 
     /// Particles of each triangle.
@@ -197,9 +187,10 @@ impl ClothState {
         self.material.map(energy).unwrap_or_default()
     }
 
-    /// Tethers to the pins, as pairs of a particle and the particle that holds it.
+    /// Tethers to the pins, as pairs of a particle and the particle that holds it. None where the solver has none.
     pub fn tethers(&self) -> &[Tether] {
-        if self.settings.tether_slack.is_some() { &self.tethers } else { &[] }
+        let is_tethered = self.settings.tether_slack.is_some() && self.settings.solver == ClothSolver::Xpbd;
+        if is_tethered { &self.tethers } else { &[] }
     }
 
     /// Pushes a particle with `force` (N) during the next step. Forces add up until then, so push once a step: in the

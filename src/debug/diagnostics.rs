@@ -5,16 +5,12 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{
-    cloth::ClothStatus,
-    schedule::{ClothPlugin, ClothSystems},
-    state::ClothState,
-};
+use crate::{cloth::ClothStatus, schedule::run_after_steps, state::ClothState};
 
 /// Measures all cloths for Bevy's diagnostics, once each time that they step: none while time stands still, several in a
 /// frame of several steps.
 ///
-/// Needs [`ClothPlugin`]; without it it does nothing and says so.
+/// Needs [`ClothPlugin`](crate::prelude::ClothPlugin); without it it does nothing and says so.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ClothDiagnosticsPlugin;
 
@@ -37,12 +33,8 @@ impl Plugin for ClothDiagnosticsPlugin {
             .register_diagnostic(Diagnostic::new(Self::CONTACTS));
     }
 
-    /// Only now is it known when cloths step, whichever plugin was added first.
     fn finish(&self, app: &mut App) {
-        match app.get_added_plugins::<ClothPlugin>().first().map(|plugin| plugin.schedule()) {
-            Some(schedule) => drop(app.add_systems(schedule, measure.in_set(ClothSystems::Finalize))),
-            None => warn!("ClothDiagnosticsPlugin can't do its work: it needs ClothPlugin; add it to the app"),
-        }
+        run_after_steps(app, "ClothDiagnosticsPlugin", measure);
     }
 }
 

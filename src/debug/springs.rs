@@ -1,10 +1,7 @@
 //! Springs and tethers: what holds particles together.
 
 use super::{ClothDebugView, Lines, Shown, palette};
-use crate::{
-    cloth::ClothSolver,
-    solver::{SpringKind, Tether, constraint::spring},
-};
+use crate::solver::{SpringKind, Tether, constraint::spring};
 
 /// A tether counts as taut from this share of its longest on.
 const TAUT_FROM: f32 = 0.999;
@@ -29,11 +26,9 @@ pub(super) fn draw_springs(lines: &mut Lines, shown: &Shown, view: &ClothDebugVi
 /// Draws the tethers that the solver uses.
 pub(super) fn draw_tethers(lines: &mut Lines, shown: &Shown) {
     let state = shown.state;
-    let Some(slack) = state.settings.tether_slack.filter(|_| state.settings.solver == ClothSolver::Xpbd) else {
-        return;
-    };
+    let slack = state.settings.tether_slack.unwrap_or_default();
     let position = &state.particles.position;
-    for &Tether { particle, pin, length } in &state.tethers {
+    for &Tether { particle, pin, length } in state.tethers() {
         let (particle, pin) = (particle as usize, pin as usize);
         let is_taut = position[particle].distance(position[pin]) >= TAUT_FROM * length * (1.0 + slack);
         let color = if is_taut { palette::TAUT } else { palette::SLACK };

@@ -48,7 +48,7 @@ impl ClothState {
 }
 
 /// The point with these barycentric weights.
-fn blend([a, b, c]: [Vec3A; 3], weights: Vec3) -> Vec3A {
+pub(crate) fn blend([a, b, c]: [Vec3A; 3], weights: Vec3) -> Vec3A {
     a * weights.x + b * weights.y + c * weights.z
 }
 

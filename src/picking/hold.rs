@@ -14,7 +14,6 @@ use bevy::{
 
 use super::{ClothPickingSettings, PointerGrabs};
 use crate::{
-    build::weld::NO_PARTICLE,
     commands::ClothCommands,
     grab::{ClothPoint, GrabId},
     pins::Pins,
@@ -33,7 +32,6 @@ pub(super) struct Hold {
     pub camera: Entity,
     pub cloth: Entity,
     pub grab: GrabId,
-    pub point: ClothPoint,
     /// Distance of the plane that the point moves in from the camera, m, along its view.
     pub depth: f32,
     /// Distance to the second finger, pixels, while there is one.
@@ -65,15 +63,13 @@ pub(super) fn follow_pointers(
     grabs.holds.retain_mut(|hold| {
         // The cloth may be gone, or was put back, and the hold with it.
         let Ok(mut state) = cloths.get_mut(hold.cloth) else { return false };
-        if state.grabs().all(|(grab, ..)| grab != hold.grab) {
-            return false;
-        }
+        let Some((_, point, _)) = state.grabs().find(|&(grab, ..)| grab == hold.grab) else { return false };
         let own = || inputs.iter().filter(|input| input.pointer_id == hold.pointer);
         let is_cancelled = own().any(|input| matches!(input.action, PointerAction::Cancel));
         if is_cancelled || !pointers.presses(hold.pointer, settings.button) {
             state.release(hold.grab);
             if is_pinning && !is_cancelled {
-                commands.entity(hold.cloth).pin_cloth(pins_at(&state, hold.point).to(settings.pin_to));
+                commands.entity(hold.cloth).pin_cloth(pins_at(&state, point).to(settings.pin_to));
             }
             return false;
         }
@@ -97,12 +93,9 @@ fn lines_of(action: &PointerAction) -> f32 {
 
 /// Pins for the particles of a point's triangle, by a vertex of each.
 fn pins_at(state: &ClothState, point: ClothPoint) -> Pins {
-    let particles = state.triangles().get(point.triangle as usize).copied().unwrap_or([NO_PARTICLE; 3]);
-    let vertex_of = |particle: u32| {
-        let vertex = state.particle_of_vertex.iter().position(|&other| other == particle && other != NO_PARTICLE)?;
-        Some(vertex as u32)
-    };
-    Pins::indices(particles.into_iter().filter_map(vertex_of))
+    let particles = state.triangles().get(point.triangle as usize).into_iter().flatten();
+    let vertex_of = |particle| (0..).zip(&*state.particle_of_vertex).find(|&(_, other)| other == particle);
+    Pins::indices(particles.filter_map(vertex_of).map(|(vertex, _)| vertex))
 }
 
 pub(super) fn is_pressed(press: &PointerPress, button: PointerButton) -> bool {

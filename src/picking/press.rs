@@ -16,7 +16,7 @@ use super::{
     ClothPickingSettings, PointerGrabs,
     hold::{Hold, is_pressed},
 };
-use crate::{build::weld::NO_PARTICLE, draw::mesh::ClothMesh, grab::ClothPoint, state::ClothState};
+use crate::{draw::mesh::ClothMesh, grab::ClothPoint, state::ClothState};
 
 /// Who points, from where, and at what.
 #[derive(SystemParam)]
@@ -53,7 +53,7 @@ pub(super) fn on_press(
     let Some(point) = point_of(&state, mesh, &hit) else { return };
     let Some(grab) = state.grab(point, settings.grip) else { return };
     let target = press.pointer_location.target.clone();
-    grabs.holds.push(Hold { pointer, target, camera, cloth: entity, grab, point, depth, spread: None });
+    grabs.holds.push(Hold { pointer, target, camera, cloth: entity, grab, depth, spread: None });
 }
 
 impl Sight<'_, '_> {
@@ -95,7 +95,7 @@ fn point_of(state: &ClothState, mesh: &ClothMesh, hit: &RayMeshHit) -> Option<Cl
     let vertices = mesh.binding.triangles.get(hit.triangle_index?)?;
     let particles = vertices.map(|vertex| mesh.binding.particle_of_vertex[vertex as usize]);
     let weight_of = |particle: u32| {
-        let corner = particles.iter().position(|&other| other == particle && other != NO_PARTICLE)?;
+        let corner = particles.iter().position(|&other| other == particle)?;
         Some(hit.barycentric_coords[corner].max(0.0))
     };
     let weights_in = |triangle: &[u32; 3]| {

@@ -31,14 +31,14 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     }
     scratch.fit(topology);
     grab::take_up(particles, ctx.grabs, &mut scratch.held);
-    let (needed_substeps, stiffness_scale) = match ctx.method {
-        Method::Xpbd => (ctx.substeps.max(1), 1.0),
-        Method::Explicit => explicit::stable_substeps(particles, topology, ctx, dt, scratch),
+    let (most, needed_substeps, stiffness_scale) = match ctx.method {
+        Method::Xpbd => (u32::MAX, ctx.substeps.max(1), 1.0),
+        Method::Explicit => {
+            let (needed, scale) = explicit::stable_substeps(particles, topology, ctx, dt, scratch);
+            (ctx.max_substeps.max(1), needed, scale)
+        }
     };
-    let substeps = match ctx.method {
-        Method::Xpbd => needed_substeps,
-        Method::Explicit => needed_substeps.min(ctx.max_substeps.max(1)),
-    };
+    let substeps = needed_substeps.min(most);
     let h = dt / substeps as f32;
     let decay = ops::exp(-ctx.material.damping * h);
     let air_interval = ((1.0 / (AIR_RATE * h)) as u32).max(1);

@@ -89,6 +89,14 @@ fn press(app: &mut App) {
     click(app, MouseButton::Left, ButtonState::Pressed);
 }
 
+/// Presses where the first camera sees a place. Returns the pixel.
+fn press_at(app: &mut App, place: Vec3) -> Vec2 {
+    let at = on_screen(app, place);
+    move_mouse(app, at);
+    press(app);
+    at
+}
+
 fn release(app: &mut App) {
     click(app, MouseButton::Left, ButtonState::Released);
 }
@@ -118,9 +126,7 @@ fn a_pressed_cloth_follows_the_mouse_until_it_is_let_go() {
     let mut app = with_pointer();
     let cloth = curtain(&mut app);
     let start = Vec3::new(0.1, 0.02, 0.0);
-    let at = on_screen(&mut app, start);
-    move_mouse(&mut app, at);
-    press(&mut app);
+    let at = press_at(&mut app, start);
     assert!(is_held(&app, cloth));
     assert_close(held(&app, cloth).0, start, 0.02);
     for step in 1..=20 {
@@ -145,9 +151,7 @@ fn both_sides_of_a_cloth_can_be_grabbed() {
     let turned = Transform::from_rotation(Quat::from_rotation_y(core::f32::consts::PI));
     let cloth = spawn_cloth(&mut app, grid, (Pins::edge(ClothEdge::Top), turned));
     run(&mut app, 2);
-    let at = on_screen(&mut app, Vec3::ZERO);
-    move_mouse(&mut app, at);
-    press(&mut app);
+    press_at(&mut app, Vec3::ZERO);
     assert!(is_held(&app, cloth));
 }
 
@@ -164,9 +168,7 @@ fn the_nearest_of_two_cloths_is_grabbed_and_none_behind_something_else() {
     app.world_mut().spawn((Mesh3d(wall), Transform::from_xyz(-0.2, 0.0, 1.0)));
     run(&mut app, 2);
     for (x, expected) in [(0.2, Some(near)), (-0.2, None), (0.0, Some(far))] {
-        let at = on_screen(&mut app, Vec3::new(x, 0.0, 1.0));
-        move_mouse(&mut app, at);
-        press(&mut app);
+        press_at(&mut app, Vec3::new(x, 0.0, 1.0));
         let grabs = app.world().resource::<PointerGrabs>();
         assert_eq!(grabs.held_by(PointerId::Mouse), expected, "at {x}");
         release(&mut app);
@@ -185,9 +187,7 @@ fn a_panel_that_has_the_pointer_is_in_the_way() {
     };
     app.add_systems(PreUpdate, hits.in_set(PickingSystems::Backend));
     let cloth = curtain(&mut app);
-    let at = on_screen(&mut app, Vec3::ZERO);
-    move_mouse(&mut app, at);
-    press(&mut app);
+    press_at(&mut app, Vec3::ZERO);
     assert!(!is_held(&app, cloth));
 }
 
@@ -220,9 +220,7 @@ fn a_finger_that_comes_down_on_an_egui_window_grabs_nothing_behind_it() {
 fn the_wheel_moves_what_is_held_away_and_back() {
     let mut app = with_pointer();
     let cloth = curtain(&mut app);
-    let at = on_screen(&mut app, Vec3::new(0.0, -0.3, 0.0));
-    move_mouse(&mut app, at);
-    press(&mut app);
+    press_at(&mut app, Vec3::new(0.0, -0.3, 0.0));
     let depth = |app: &App| 5.0 - held(app, cloth).1.z;
     let before = depth(&app);
     let window = window(&mut app);
@@ -283,9 +281,7 @@ fn a_key_or_a_setting_turns_a_release_into_a_pin() {
         let mut app = with_pointer();
         let cloth = curtain(&mut app);
         let pins = pinned(&app, cloth).len();
-        let at = on_screen(&mut app, Vec3::new(0.01, -0.1, 0.0));
-        move_mouse(&mut app, at);
-        press(&mut app);
+        let at = press_at(&mut app, Vec3::new(0.01, -0.1, 0.0));
         move_mouse(&mut app, at + Vec2::new(20.0, -60.0));
         run(&mut app, 60);
         let (point, _) = held(&app, cloth);
@@ -391,9 +387,7 @@ fn a_cloth_that_goes_while_it_is_held_ends_the_hold_quietly() {
     for (name, end) in ends {
         let mut app = with_pointer();
         let cloth = curtain(&mut app);
-        let at = on_screen(&mut app, Vec3::ZERO);
-        move_mouse(&mut app, at);
-        press(&mut app);
+        let at = press_at(&mut app, Vec3::ZERO);
         assert!(is_held(&app, cloth), "{name}");
         end(&mut app, cloth);
         run(&mut app, 2);
@@ -407,9 +401,7 @@ fn a_cloth_that_goes_while_it_is_held_ends_the_hold_quietly() {
 fn a_camera_that_goes_leaves_the_hold_where_it_is() {
     let mut app = with_pointer();
     let cloth = curtain(&mut app);
-    let at = on_screen(&mut app, Vec3::ZERO);
-    move_mouse(&mut app, at);
-    press(&mut app);
+    let at = press_at(&mut app, Vec3::ZERO);
     let camera = app.world_mut().query_filtered::<Entity, With<Camera>>().single(app.world()).unwrap();
     app.world_mut().entity_mut(camera).despawn();
     let (_, target) = held(&app, cloth);
@@ -423,9 +415,7 @@ fn a_camera_that_goes_leaves_the_hold_where_it_is() {
 fn a_jerk_of_the_mouse_keeps_the_cloth_in_one_piece() {
     let mut app = with_pointer();
     let cloth = curtain(&mut app);
-    let at = on_screen(&mut app, Vec3::new(0.0, -0.4, 0.0));
-    move_mouse(&mut app, at);
-    press(&mut app);
+    let at = press_at(&mut app, Vec3::new(0.0, -0.4, 0.0));
     for side in [-1.0, 1.0, -1.0, 1.0] {
         move_mouse(&mut app, at + Vec2::new(side * 390.0, -250.0));
         run(&mut app, 5);
@@ -458,8 +448,6 @@ fn an_app_may_add_mesh_picking_itself() {
     ));
     add_camera(&mut app, Projection::from(PerspectiveProjection::default()), None, 0);
     let cloth = curtain(&mut app);
-    let at = on_screen(&mut app, Vec3::ZERO);
-    move_mouse(&mut app, at);
-    press(&mut app);
+    press_at(&mut app, Vec3::ZERO);
     assert_eq!(state(&app, cloth).grabs().len(), 1);
 }

@@ -15,8 +15,8 @@
 //!
 //! While it is held, the point has the mass of the hand as well: particles of a fraction of a gram, between springs
 //! that are solved once a substep, couldn't hold the cloth's weight nor lead it. That mass has no inertia of its own:
-//! the point starts each substep at the speed of its target, so that it doesn't swing around it. The force is bounded,
-//! and what can't follow holds the hand back.
+//! the point starts each substep at the speed of its target, so that it doesn't swing around it. The force is bounded:
+//! springs that can't follow hold the hand back. Tethers don't, they move the rest of the cloth as if it had no weight.
 
 use core::ops::Range;
 use std::sync::Arc;
