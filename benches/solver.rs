@@ -6,7 +6,7 @@ use bevy::{math::Mat3A, math::Vec3A, prelude::Mesh};
 use bevy_drape::{
     build,
     prelude::{ClothGrid, Fabric},
-    solver::{Anchor, Method, Particles, Scratch, StepContext, Topology, step},
+    solver::{Anchor, Effort, Method, Particles, Scratch, StepContext, Topology, step},
 };
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 
@@ -22,6 +22,8 @@ fn topology(n: u32) -> Topology {
 fn hang(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("hang");
     for (name, method, n, air) in [
+        ("strands", Method::Strands, 64, 0.0),
+        ("strands in air", Method::Strands, 64, 1.225),
         ("xpbd", Method::Xpbd, 64, 0.0),
         ("xpbd in air", Method::Xpbd, 64, 1.225),
         ("explicit", Method::Explicit, 32, 0.0),
@@ -37,16 +39,21 @@ fn hang(criterion: &mut Criterion) {
         let mut particles = Particles::at_rest(rest, &topology, &material);
         particles.set_masses(&topology, &material, |i| pins.contains(&(i as u32)));
         let tethers = build::tethers(&topology, &pins);
+        let effort = match method {
+            Method::Strands => Effort::to_hold(0.005, &topology),
+            Method::Xpbd | Method::Explicit => Effort::fixed(8, Vec::new()),
+        };
         let ctx = StepContext {
             dt: 1.0 / 60.0,
             method,
-            substeps: 8,
+            effort: &effort,
             max_substeps: 512,
             material,
             gravity: Vec3A::NEG_Y * 9.81,
             anchors: &anchors,
             grabs: &[],
-            tethers: &tethers,
+            max_velocity: 50.0,
+            tethers: Some(&tethers),
             tether_slack: 0.002,
             obstacles: &[],
             fluid_density: air,

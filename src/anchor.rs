@@ -6,7 +6,7 @@ use bevy::{
 };
 
 use crate::{
-    build,
+    build::Tying,
     cloth::ClothStatus,
     draw::{carrier::Carrier, mesh::ClothMesh},
     origin,
@@ -67,12 +67,34 @@ pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity,
         return;
     }
     let particles: Vec<u32> = pins.iter().map(|pin| pin.particle).collect();
-    state.tethers = build::tethers(&state.topology, &particles);
+    state.tethers.keep(|pin| particles.binary_search(&pin).is_ok());
+    state.tying = Some(Box::new(Tying::begin(&state.topology, &particles)));
     state.pins = pins;
     set_masses(state);
     // Takes the places of new pins in their targets' space now, before either moves on.
     plan_anchors(state, cloth, poses);
     state.carrier = carrier(state, cloth, poses);
+}
+
+/// Distances along the cloth that are worked out in one step: some milliseconds. 64 x 64 particles on two pins are done
+/// in one.
+const DISTANCES_A_STEP: usize = 12_000;
+
+/// Works on tethers that pins have asked for; a large cloth hangs by its old ones meanwhile.
+pub(crate) fn tie_tethers(mut cloths: Query<(&mut ClothState, &ClothStatus)>) {
+    for (mut state, status) in &mut cloths {
+        if *status != ClothStatus::Ready || state.tying.is_none() {
+            continue;
+        }
+        let state = &mut *state;
+        if let Some(mut tying) = state.tying.take() {
+            if tying.go_on(&state.topology, DISTANCES_A_STEP) {
+                state.tethers = tying.finish(&state.topology);
+            } else {
+                state.tying = Some(tying);
+            }
+        }
+    }
 }
 
 /// Gives free particles their mass, and fixed ones none that could be moved.

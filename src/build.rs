@@ -5,9 +5,13 @@ use bevy::{math::Mat3A, prelude::*};
 use crate::{error::ClothError, solver::Topology};
 
 mod cells;
+mod chart;
 mod coloring;
 mod edges;
 mod geodesic;
+mod lattice;
+mod levels;
+mod order;
 pub(crate) mod plan;
 pub(crate) mod source;
 mod springs;
@@ -15,15 +19,18 @@ pub(crate) mod system;
 mod topology;
 pub(crate) mod weld;
 
+pub(crate) use geodesic::Tying;
 pub use geodesic::{grab_tethers, tethers};
 
 use source::SourceMesh;
+use topology::Shape;
 use weld::Welded;
 
 /// The springs of a mesh, for those who run the [`solver`](crate::solver) themselves.
 ///
 /// `to_world` gives the rest shape its scale: one unit after it is a metre. Vertices that share a position are one
-/// particle; particles are numbered in the order of their first vertex.
+/// particle. Particles are numbered row by row where the mesh has rows and columns, else in the order of their first
+/// vertex, unless neighbours would stand far apart in memory: [`particles_of_vertices`] tells.
 ///
 /// # Errors
 ///
@@ -32,13 +39,34 @@ pub fn topology_of(mesh: &Mesh, to_world: Mat3A) -> Result<Topology, ClothError>
     Ok(particles_of(&SourceMesh::read(mesh)?, to_world)?.1)
 }
 
+/// The particle of [`topology_of`] that each vertex is; none for a vertex that is in no triangle.
+///
+/// # Errors
+///
+/// A [`ClothError`] where the mesh has no triangle with an area or can't be read.
+pub fn particles_of_vertices(mesh: &Mesh, to_world: Mat3A) -> Result<Vec<Option<u32>>, ClothError> {
+    let (welded, _) = particles_of(&SourceMesh::read(mesh)?, to_world)?;
+    let particle = |&particle: &u32| (particle != weld::NO_PARTICLE).then_some(particle);
+    Ok(welded.particle_of_vertex.iter().map(particle).collect())
+}
+
 /// Welds a mesh and joins its particles with springs.
 fn particles_of(source: &SourceMesh, to_world: Mat3A) -> Result<(Welded, Topology), ClothError> {
-    let welded = weld::weld(&source.positions, &source.triangles);
-    let particle = |vertex: u32| welded.particle_of_vertex[vertex as usize];
-    let triangles: Vec<[u32; 3]> = source.triangles.iter().map(|t| t.map(particle)).collect();
-    let place = |&vertex: &u32| to_world * source.positions[vertex as usize];
-    let rest: Vec<Vec3> = welded.vertex_of_particle.iter().map(place).collect();
-    let topology = topology::build(&rest, &triangles)?;
+    let mut welded = weld::weld(&source.positions, &source.triangles);
+    let rest = |welded: &Welded| -> Vec<Vec3> {
+        let place = |&vertex: &u32| to_world * source.positions[vertex as usize];
+        welded.vertex_of_particle.iter().map(place).collect()
+    };
+    let triangles = |welded: &Welded| -> Vec<[u32; 3]> {
+        let particle = |vertex: u32| welded.particle_of_vertex[vertex as usize];
+        source.triangles.iter().map(|t| t.map(particle)).collect()
+    };
+    let mut shape = Shape::find(&rest(&welded), &triangles(&welded))?;
+    if let Some(order) = order::better(welded.vertex_of_particle.len(), &shape) {
+        welded.reorder(&order);
+        shape = Shape::find(&rest(&welded), &triangles(&welded))?;
+    }
+    let uvs = source.uvs.as_ref().and_then(|uvs| welded.shared(uvs));
+    let topology = topology::build(rest(&welded), shape, uvs);
     Ok((welded, topology))
 }

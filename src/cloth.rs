@@ -6,7 +6,7 @@ use crate::{
     error::{ClothError, check},
     fabric::Fabric,
     pins::Pins,
-    solver::Method,
+    solver::{Effort, LevelPass, Method, Topology},
     state::ClothState,
 };
 
@@ -14,8 +14,11 @@ use crate::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothSolver {
-    /// Extended position-based dynamics: stable at any stiffness and time step. For games.
+    /// Each thread of the cloth solved exactly, and coarse levels for the long waves: the least stretch for the time
+    /// that it takes, stable at any stiffness and time step. For games.
     #[default]
+    Strands,
+    /// Extended position-based dynamics, spring by spring: stable as well, and stretched more.
     Xpbd,
     /// Forces and symplectic Euler, the textbook form: the most accurate, and many times as costly. It takes the
     /// substeps that stability needs, up to [`Cloth::max_substeps`].
@@ -25,6 +28,7 @@ pub enum ClothSolver {
 impl From<ClothSolver> for Method {
     fn from(solver: ClothSolver) -> Self {
         match solver {
+            ClothSolver::Strands => Self::Strands,
             ClothSolver::Xpbd => Self::Xpbd,
             ClothSolver::Explicit => Self::Explicit,
         }
@@ -40,8 +44,16 @@ impl From<ClothSolver> for Method {
 pub struct Cloth {
     /// How the springs are integrated.
     pub solver: ClothSolver,
-    /// Substeps per step of [`ClothSolver::Xpbd`]: at least 1. 8 for most, 16 and more for fine meshes.
-    pub substeps: u32,
+    /// The most that threads are to be stretched, no unit, if their stiffness can hold it: 0.001 to 0.1. What
+    /// [`ClothSolver::Strands`] chooses [`substeps`](Self::substeps) and [`levels`](Self::levels) by, where they aren't
+    /// set by hand. The smaller, the more it costs, and the livelier the cloth.
+    pub max_strain: f32,
+    /// Substeps per step, at least 1. `None` for as many as [`max_strain`](Self::max_strain) needs, and at least 8 near
+    /// obstacles; with [`ClothSolver::Xpbd`] for 8.
+    pub substeps: Option<u32>,
+    /// Iterations of the coarse levels of [`ClothSolver::Strands`] in each substep. `None` for all levels that the mesh
+    /// has, an empty list for none of them.
+    pub levels: Option<Vec<LevelPass>>,
     /// The most substeps that [`ClothSolver::Explicit`] may take per step. Where that isn't enough, stiffness and
     /// damping are cut down to what is stable, and one warning says so.
     pub max_substeps: u32,
@@ -50,8 +62,11 @@ pub struct Cloth {
     /// By how much of its length a tether gives, no unit, 0 or more; 0.002 to 0.01 for cloth. `None` for no tethers.
     ///
     /// Tethers keep every particle within the cloth's own length of its pins: the cure for cloth that stretches like
-    /// rubber. Only [`ClothSolver::Xpbd`] has them.
+    /// rubber. [`ClothSolver::Explicit`] hasn't them.
     pub tether_slack: Option<f32>,
+    /// The most that a particle may be faster than what the cloth is pinned to, m/s, greater than 0. It keeps single
+    /// particles from thrashing about; 50 is faster than any storm. [`ClothSolver::Explicit`] hasn't it.
+    pub max_velocity: f32,
     /// Density of the air around in kg/m³. 1.225 at sea level, 0 for a vacuum.
     pub fluid_density: f32,
     /// Which obstacles the cloth meets: those whose [`ClothCollider::layers`](crate::prelude::ClothCollider::layers)
@@ -63,10 +78,13 @@ impl Default for Cloth {
     fn default() -> Self {
         Self {
             solver: ClothSolver::default(),
-            substeps: 8,
+            max_strain: 0.005,
+            substeps: None,
+            levels: None,
             max_substeps: 512,
             gravity_scale: 1.0,
             tether_slack: Some(0.005),
+            max_velocity: 50.0,
             fluid_density: 1.225,
             collision_mask: u32::MAX,
         }
@@ -76,7 +94,28 @@ impl Default for Cloth {
 /// A step of more substeps than this would look like a program that hangs.
 const MOST_SUBSTEPS: u32 = 10_000;
 
+/// The same for the iterations of a level.
+const MOST_ITERATIONS: u32 = 1000;
+
+/// Substeps of [`ClothSolver::Xpbd`], where they aren't set.
+const XPBD_SUBSTEPS: u32 = 8;
+
 impl Cloth {
+    /// Substeps and levels for a mesh.
+    pub(crate) fn effort(&self, topology: &Topology) -> Effort {
+        let is_woven = self.solver == ClothSolver::Strands;
+        let mut effort = match self.substeps {
+            Some(substeps) if is_woven => Effort::fixed(substeps, Effort::levels_for(substeps, topology)),
+            None if is_woven => Effort::to_hold(self.max_strain, topology),
+            substeps => Effort::fixed(substeps.unwrap_or(XPBD_SUBSTEPS), Vec::new()),
+        };
+        if let Some(levels) = &self.levels {
+            effort.levels.clone_from(levels);
+            effort.contact_levels.clone_from(levels);
+        }
+        effort
+    }
+
     /// Checks the ranges of all settings.
     ///
     /// # Errors
@@ -84,11 +123,16 @@ impl Cloth {
     /// [`ClothError::InvalidParameter`] with the first field that is out of its range.
     pub fn validate(&self) -> Result<(), ClothError> {
         let count = |name, value: u32| check(name, value as f32, (1..=MOST_SUBSTEPS).contains(&value), "1 to 10000");
-        count("Cloth::substeps", self.substeps)?;
+        let strain = self.max_strain;
+        check("Cloth::max_strain", strain, strain > 0.0, "greater than 0")?;
+        count("Cloth::substeps", self.substeps.unwrap_or(1))?;
+        let iterations = self.levels.iter().flatten().map(|level| level.iterations).max().unwrap_or(0);
+        check("Cloth::levels", iterations as f32, iterations <= MOST_ITERATIONS, "0 to 1000 iterations")?;
         count("Cloth::max_substeps", self.max_substeps)?;
         check("Cloth::gravity_scale", self.gravity_scale, true, "finite")?;
         let slack = self.tether_slack.unwrap_or_default();
         check("Cloth::tether_slack", slack, slack >= 0.0, "0 or greater, or `None`")?;
+        check("Cloth::max_velocity", self.max_velocity, self.max_velocity > 0.0, "greater than 0 m/s")?;
         let air = self.fluid_density;
         check("Cloth::fluid_density", air, air >= 0.0, "0 kg/m³ or greater")
     }

@@ -126,6 +126,7 @@ impl Plugin for ClothPlugin {
                     (
                         settings::update_settings,
                         anchor::update_pins,
+                        anchor::tie_tethers,
                         anchor::follow_targets,
                         grab::lead_grabs,
                         collider::gather_obstacles,

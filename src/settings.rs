@@ -13,7 +13,10 @@ pub(crate) fn update_settings(
         if *status != ClothStatus::Ready {
             continue;
         }
-        let settings = cloth.validate().map(|()| state.settings = cloth.clone());
+        let settings = cloth.validate().map(|()| {
+            state.effort = cloth.effort(&state.topology);
+            state.settings = cloth.clone();
+        });
         let material = fabric.material().map(|material| {
             state.material = Some(material);
             anchor::set_masses(&mut state);

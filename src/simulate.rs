@@ -42,20 +42,21 @@ fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Ob
     if time.delta_secs() <= 0.0 {
         return;
     }
-    let Cloth { solver, substeps, max_substeps, gravity_scale, .. } = state.settings;
+    let Cloth { solver, max_substeps, gravity_scale, max_velocity, .. } = state.settings;
     let Work { anchors, grabs, obstacles: near, winds: felt, scratch } = &mut state.work;
     obstacles.around(state.origin, state.settings.collision_mask, near);
     winds.around(state.origin, felt);
     let ctx = StepContext {
         dt: time.delta_secs(),
         method: solver.into(),
-        substeps,
+        effort: &state.effort,
         max_substeps,
         material,
         gravity: (gravity * gravity_scale).into(),
         anchors,
         grabs,
-        tethers: if state.settings.tether_slack.is_some() { &state.tethers } else { &[] },
+        max_velocity,
+        tethers: state.settings.tether_slack.map(|_| &state.tethers),
         tether_slack: state.settings.tether_slack.unwrap_or_default(),
         obstacles: near,
         fluid_density: state.settings.fluid_density,
@@ -102,7 +103,7 @@ pub(crate) fn report_steps(mut commands: Commands, mut cloths: Query<(Entity, &C
             state.said.softened = true;
             warn!(
                 "cloth {entity} is too stiff for {} substeps of the explicit solver: it runs with {:.1} % of its \
-                 stiffness and damping; raise Cloth::max_substeps, lower the stiffness or use ClothSolver::Xpbd",
+                 stiffness and damping; raise Cloth::max_substeps, lower the stiffness or use ClothSolver::Strands",
                 report.substeps,
                 report.stiffness_scale * 100.0
             );

@@ -5,11 +5,17 @@
 //! order in which a step uses them.
 
 pub mod context;
+pub mod effort;
+pub mod lattice;
+pub mod level;
 pub mod material;
 pub mod particles;
 pub mod scratch;
+pub mod simd;
 pub mod topology;
 
+mod integrate;
+mod lanes;
 mod step;
 
 pub mod constraint;
@@ -20,14 +26,19 @@ pub mod measure;
 
 pub use constraint::{
     grab::{Grab, GrabTether},
-    tether::Tether,
+    tether::{Tether, Tethers},
 };
 pub use contact::{ColliderShape, Obstacle};
 pub use context::{Anchor, Method, StepContext, StepReport};
+pub use effort::Effort;
 pub use force::wind::{WindRegion, WindSource};
+pub(crate) use lanes::Lanes;
+pub use lattice::{Lattice, Threads};
+pub use level::{Between, Level, LevelPass, Transfer};
 pub use material::{Material, SpringConstants};
 pub use measure::{Energy, Strain};
 pub use particles::Particles;
 pub use scratch::Scratch;
+pub use simd::Instructions;
 pub use step::{MAX_TIME_STEP, step};
 pub use topology::{Spring, SpringBatch, SpringKind, Topology};

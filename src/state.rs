@@ -10,13 +10,13 @@ use bevy::{
 
 use crate::{
     anchor::HeldPin,
-    build::weld::NO_PARTICLE,
+    build::{Tying, weld::NO_PARTICLE},
     cloth::{Cloth, ClothSolver},
     draw::{carrier::Carrier, shading::particle_normals},
     grab::Grabs,
     solver::{
-        self, Anchor, Energy, Grab, Material, Obstacle, Particles, Scratch, StepReport, Strain, Tether, Topology,
-        WindSource,
+        self, Anchor, Effort, Energy, Grab, Material, Obstacle, Particles, Scratch, StepReport, Strain, Tether,
+        Tethers, Topology, WindSource,
     },
 };
 
@@ -42,12 +42,16 @@ pub struct ClothState {
     pub(crate) particle_of_vertex: Arc<[u32]>,
     /// The settings in force: the latest that were valid.
     pub(crate) settings: Cloth,
+    /// Substeps and levels that follow from the settings.
+    pub(crate) effort: Effort,
     /// The constants in force: the latest that were valid.
     pub(crate) material: Option<Material>,
     /// Fixed particles and what they follow.
     pub(crate) pins: Vec<HeldPin>,
     /// Tethers to the pins.
-    pub(crate) tethers: Vec<Tether>,
+    pub(crate) tethers: Tethers,
+    /// Tethers that are being worked out anew.
+    pub(crate) tying: Option<Box<Tying>>,
     /// Points that are held by hand.
     pub(crate) grabs: Grabs,
     /// Transform of the entity at the latest step.
@@ -188,9 +192,9 @@ impl ClothState {
     }
 
     /// Tethers to the pins, as pairs of a particle and the particle that holds it. None where the solver has none.
-    pub fn tethers(&self) -> &[Tether] {
-        let is_tethered = self.settings.tether_slack.is_some() && self.settings.solver == ClothSolver::Xpbd;
-        if is_tethered { &self.tethers } else { &[] }
+    pub fn tethers(&self) -> impl Iterator<Item = Tether> {
+        let is_tethered = self.settings.tether_slack.is_some() && self.settings.solver != ClothSolver::Explicit;
+        is_tethered.then(|| self.tethers.iter()).into_iter().flatten()
     }
 
     /// Pushes a particle with `force` (N) during the next step. Forces add up until then, so push once a step: in the

@@ -1,6 +1,9 @@
 //! What cloth costs in a headless Bevy app, wall time: all that the plugin does, without a renderer.
 
-use std::time::{Duration, Instant};
+use std::{
+    io,
+    time::{Duration, Instant},
+};
 
 use bevy::{mesh::MeshPlugin, prelude::*, time::TimeUpdateStrategy};
 use bevy_drape::{
@@ -9,19 +12,19 @@ use bevy_drape::{
 };
 use serde_json::{Value, json};
 
-use super::{Options, PinnedPart, Solver, measure, scene};
+use super::{Options, PinnedPart, Solver, measure, mesh::MeshSource, scene};
 
 /// Frames before the measurement: pools and buffers fill.
 const WARM_UP: u32 = 30;
 
 /// The hanging cloth in an app, against the same app without it and against its solver alone. The three take turns, so
 /// that whatever else the machine does meets them alike.
-pub fn one_cloth(options: &Options) -> Value {
+pub fn one_cloth(options: &Options) -> io::Result<Value> {
     let plugin = ClothPlugin::default().single_threaded();
     let mut empty = headless(plugin);
     let mut app = headless(plugin);
     spawn_hanging(&mut app, options);
-    let mut scene = scene::hang(options, PinnedPart::Corners);
+    let mut scene = scene::hang(options, &MeshSource::Grid, PinnedPart::Corners)?;
     let mut scratch = Scratch::default();
     let mut step = || {
         let mut particles = core::mem::take(&mut scene.particles);
@@ -39,18 +42,19 @@ pub fn one_cloth(options: &Options) -> Value {
             around.push(update - nothing - solver);
         }
     }
-    json!({
+    Ok(json!({
         "scene": "app",
         "n": options.n,
         "us_per_update_empty": measure::median(empties).round(),
         "us_per_update": measure::median(updates).round(),
         "us_solver": measure::median(solvers).round(),
         "us_around_solver": measure::median(around).round(),
-    })
+    }))
 }
 
 fn spawn_hanging(app: &mut App, options: &Options) {
     let solver = match options.solver {
+        Solver::Strands => ClothSolver::Strands,
         Solver::Xpbd => ClothSolver::Xpbd,
         Solver::Explicit => ClothSolver::Explicit,
     };
@@ -58,7 +62,13 @@ fn spawn_hanging(app: &mut App, options: &Options) {
     let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(grid);
     app.world_mut().spawn((
         Mesh3d(mesh),
-        Cloth { solver, substeps: options.substeps, tether_slack: Some(options.tether_slack), ..default() },
+        Cloth {
+            solver,
+            max_strain: options.max_strain,
+            substeps: options.substeps,
+            tether_slack: Some(options.tether_slack),
+            ..default()
+        },
         Fabric { damping: options.damping, drag: 0.0, lift: 0.0, ..default() },
         Pins::edge_corners(ClothEdge::Top),
     ));

@@ -2,17 +2,26 @@
 //!
 //! ```text
 //! cargo run --release --example lab -- hang --n 64 --substeps 8 --frames 300 --solver xpbd
-//! cargo run --release --example lab -- drape --n 64
+//! cargo run --release --example lab -- hang --n 64 --mesh delaunay --compare-oracle
+//! cargo run --release --example lab -- drape --n 64 --mesh assets/flag.glb
 //! cargo run --release --example lab -- --help
 //! ```
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{io, path::PathBuf, process::ExitCode, str::FromStr};
 
+use bevy_drape::solver::{Effort, LevelPass, Topology};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use serde_json::Value;
 
 mod app;
 mod measure;
+mod mesh;
+mod oracle;
+mod pins;
 mod scene;
+
+use mesh::MeshSource;
+use oracle::Oracle;
 
 #[derive(Parser)]
 #[command(about = "Experiments without a window: one JSON line each on standard output")]
@@ -27,9 +36,16 @@ enum Experiment {
     Hang {
         #[command(flatten)]
         options: Options,
-        /// What is pinned
+        /// grid, delaunay, hex, skirt, or a FILE.glb, which is scaled to 1 m
+        #[arg(long, default_value = "grid")]
+        mesh: MeshSource,
+        /// What is pinned: two corners of the top, or all of it, as always with a skirt; of a file's mesh, the top is
+        /// its highest 2 %
         #[arg(long, value_enum, default_value = "corners")]
         pins: PinnedPart,
+        /// Also runs the same springs in tiny steps of f64, to 0.5 s, and says how far the cloth is from them then
+        #[arg(long)]
+        compare_oracle: bool,
     },
     /// What a frame costs in a headless Bevy app: an app without cloth, one with the hanging cloth, and its solver
     App {
@@ -49,23 +65,32 @@ enum Experiment {
     Drape {
         #[command(flatten)]
         options: Options,
+        /// grid, delaunay, hex, skirt, or a FILE.glb, which is scaled to 1 m
+        #[arg(long, default_value = "grid")]
+        mesh: MeshSource,
     },
 }
 
 #[derive(Args)]
 struct Options {
-    /// Particles along each side
+    /// Particles along each side, n; n² or about as many on other meshes than the grid, and without effect on a file
     #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=1024))]
     n: u32,
-    /// Substeps a frame; the explicit solver finds its own
-    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..))]
-    substeps: u32,
+    /// Substeps a frame; by default as many as the strain needs (strands) or 8 (xpbd). The explicit solver finds its own
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    substeps: Option<u32>,
+    /// The largest strain that is wanted: strands choose their substeps by it
+    #[arg(long, default_value_t = 0.01)]
+    max_strain: f32,
     /// Frames of 1/60 s
     #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..))]
     frames: u32,
     /// How the springs are integrated
-    #[arg(long, value_enum, default_value = "xpbd")]
+    #[arg(long, value_enum, default_value = "strands")]
     solver: Solver,
+    /// Coarse levels of strands: auto, none, or STRIDExITERATIONS,.. as in 8x8,4x4
+    #[arg(long, default_value = "auto")]
+    levels: Levels,
     /// Whether particles are tethered to the pins (xpbd only)
     #[arg(long, value_enum, default_value = "on")]
     tethers: Switch,
@@ -86,6 +111,48 @@ struct Options {
     at_seconds: Option<f32>,
 }
 
+/// Which coarse levels are used.
+#[derive(Clone)]
+enum Levels {
+    Auto,
+    Set(Vec<LevelPass>),
+}
+
+impl FromStr for Levels {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let pass = |level: &str| {
+            let (stride, iterations) = level.split_once('x')?;
+            Some(LevelPass { stride: stride.parse().ok()?, iterations: iterations.parse().ok()? })
+        };
+        match text {
+            "auto" => Ok(Self::Auto),
+            "none" => Ok(Self::Set(Vec::new())),
+            list => {
+                let passes: Option<Vec<LevelPass>> = list.split(',').map(pass).collect();
+                passes.map(Self::Set).ok_or("levels are auto, none, or strides and iterations as in 8x8,4x4")
+            }
+        }
+    }
+}
+
+impl Options {
+    /// Substeps and levels for a mesh.
+    fn effort(&self, topology: &Topology) -> Effort {
+        let mut effort = match (self.solver, self.substeps) {
+            (Solver::Strands, None) => Effort::to_hold(self.max_strain, topology),
+            (Solver::Strands, Some(substeps)) => Effort::fixed(substeps, Effort::levels_for(substeps, topology)),
+            (_, substeps) => Effort::fixed(substeps.unwrap_or(8), Vec::new()),
+        };
+        if let Levels::Set(levels) = &self.levels {
+            effort.levels.clone_from(levels);
+            effort.contact_levels.clone_from(levels);
+        }
+        effort
+    }
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 enum PinnedPart {
     Corners,
@@ -94,6 +161,7 @@ enum PinnedPart {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Solver {
+    Strands,
     Xpbd,
     Explicit,
 }
@@ -106,13 +174,7 @@ enum Switch {
 
 fn main() -> ExitCode {
     let Cli { experiment } = Cli::parse();
-    let result = match &experiment {
-        Experiment::Hang { options, pins } => measure::run("hang", options, scene::hang(options, *pins)),
-        Experiment::Drape { options } => measure::run("drape", options, scene::drape(options)),
-        Experiment::App { options } => Ok(app::one_cloth(options)),
-        Experiment::Many { frames, single_threaded } => Ok(app::many_flags(*frames, *single_threaded)),
-    };
-    match result {
+    match run(&experiment) {
         Ok(line) => {
             println!("{line}");
             ExitCode::SUCCESS
@@ -121,5 +183,22 @@ fn main() -> ExitCode {
             eprintln!("{error}");
             ExitCode::FAILURE
         }
+    }
+}
+
+fn run(experiment: &Experiment) -> io::Result<Value> {
+    match experiment {
+        Experiment::Hang { options, mesh, pins, compare_oracle } => {
+            if *compare_oracle && options.frames < oracle::FRAME {
+                let need = format!("--compare-oracle compares after {} frames; run as many or more", oracle::FRAME);
+                return Err(io::Error::other(need));
+            }
+            let scene = scene::hang(options, mesh, *pins)?;
+            let oracle = compare_oracle.then(|| Oracle::run(&scene, &scene.context(options)));
+            measure::run("hang", options, scene, oracle.as_ref())
+        }
+        Experiment::Drape { options, mesh } => measure::run("drape", options, scene::drape(options, mesh)?, None),
+        Experiment::App { options } => app::one_cloth(options),
+        Experiment::Many { frames, single_threaded } => Ok(app::many_flags(*frames, *single_threaded)),
     }
 }

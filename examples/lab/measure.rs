@@ -9,6 +9,8 @@ use serde_json::{Value, json};
 
 use super::{
     Options, Solver,
+    mesh::MeshSource,
+    oracle::{self, Oracle},
     scene::{FRAME, Scene},
 };
 
@@ -24,11 +26,13 @@ struct Frame {
     penetration: f32,
 }
 
-/// Runs `scene` and returns its line.
-pub fn run(name: &str, options: &Options, mut scene: Scene) -> io::Result<Value> {
+/// Runs `scene` and returns its line. With an `oracle` it also says how far the cloth is from it after 0.5 s, and how
+/// far the oracle is stretched.
+pub fn run(name: &str, options: &Options, mut scene: Scene, oracle: Option<&Oracle>) -> io::Result<Value> {
     let mut scratch = Scratch::default();
     let mut substeps = 0;
     let mut frames = Vec::new();
+    let mut distance = None;
     let positions_after = options.at_seconds.map_or(options.frames, |seconds| (seconds / FRAME).round() as u32);
     for frame in 1..=options.frames {
         let mut particles = core::mem::take(&mut scene.particles);
@@ -39,22 +43,40 @@ pub fn run(name: &str, options: &Options, mut scene: Scene) -> io::Result<Value>
         substeps = report.substeps;
         scene.particles = particles;
         frames.push(measure(&scene, microseconds));
+        if frame == oracle::FRAME {
+            distance = oracle.map(|oracle| oracle.rms_distance(&scene.particles.position));
+        }
         if let Some(file) = &options.positions
             && frame == positions_after
         {
             write_positions(file, &scene.particles.position)?;
         }
     }
+    let mut line = line(name, options, &scene, substeps, &frames);
+    if let Some(oracle) = oracle {
+        line["rms_05s_m"] = distance.into();
+        line["oracle_max_strain"] = oracle.max_strain.into();
+        line["oracle_mean_strain"] = oracle.mean_strain.into();
+    }
+    Ok(line)
+}
+
+fn line(name: &str, options: &Options, scene: &Scene, substeps: u32, frames: &[Frame]) -> Value {
     let last = &frames[frames.len().saturating_sub(LAST)..];
     let mean = |value: fn(&Frame) -> f32| last.iter().map(value).sum::<f32>() / last.len() as f32;
     let most = |value: fn(&Frame) -> f32| frames.iter().map(value).fold(0.0, f32::max);
-    Ok(json!({
+    json!({
         "scene": name,
-        "n": options.n,
+        "mesh": scene.mesh.to_string(),
+        // A file has as many particles as it has.
+        "n": if let MeshSource::File(_) = scene.mesh { None } else { Some(options.n) },
         "particles": scene.particles.len(),
         "springs": scene.topology.springs.len(),
         "substeps": substeps,
-        "solver": match options.solver { Solver::Xpbd => "xpbd", Solver::Explicit => "explicit" },
+        "levels": scene.levels(),
+        "build_ms": scene.build_ms,
+        "tethers_ms": scene.tethers_ms,
+        "solver": match options.solver { Solver::Strands => "strands", Solver::Xpbd => "xpbd", Solver::Explicit => "explicit" },
         "threads": options.threads,
         "us_per_frame_median": median(frames.iter().map(|frame| frame.microseconds).collect()).round(),
         "max_strain": mean(|frame| frame.max_strain),
@@ -65,7 +87,7 @@ pub fn run(name: &str, options: &Options, mut scene: Scene) -> io::Result<Value>
         "max_speed_end": scene.particles.velocity.iter().map(|v| v.length()).fold(0.0, f32::max),
         "finite": scene.particles.is_finite(),
         "peak_rss_mb": peak_rss_mb(),
-    }))
+    })
 }
 
 fn measure(scene: &Scene, microseconds: f64) -> Frame {
@@ -84,7 +106,7 @@ fn measure(scene: &Scene, microseconds: f64) -> Frame {
         microseconds,
         max_strain: strains[strains.len() - 1],
         p99_strain: strains[(strains.len() - 1) * 99 / 100],
-        mean_strain: strains.iter().sum::<f32>() / strains.len() as f32,
+        mean_strain: strains.iter().map(|strain| strain.max(0.0)).sum::<f32>() / strains.len() as f32,
         penetration: position.iter().map(depth).fold(0.0, f32::max),
     }
 }

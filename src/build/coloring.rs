@@ -3,38 +3,37 @@
 //! Within a colour the order doesn't matter, so it may run side by side, and sweeping colour after colour carries no
 //! direction of the mesh into the cloth.
 
-use bevy::prelude::*;
-
-use super::springs::Link;
 use crate::solver::{Spring, SpringBatch, SpringKind};
 
 /// Order in which the solver visits the kinds. What comes last is held best: stretch shows more than bending.
 const ORDER: [SpringKind; 3] = [SpringKind::Bend, SpringKind::Shear, SpringKind::Structural];
 
-/// The springs of `links` in batches of one kind and one colour, with rest lengths from `rest` (m).
-pub(crate) fn batches(rest: &[Vec3], links: &[Link]) -> (Vec<Spring>, Vec<SpringBatch>) {
-    let mut springs = Vec::with_capacity(links.len());
+/// The springs in batches of one kind, one colour, and either on a lattice or not, for `count` particles.
+pub(crate) fn batches(count: usize, all: &[(SpringKind, Spring)], woven: &[bool]) -> (Vec<Spring>, Vec<SpringBatch>) {
+    let mut springs = Vec::with_capacity(all.len());
     let mut batches = Vec::new();
-    for kind in ORDER {
-        let mut left: Vec<Link> = links.iter().copied().filter(|link| link.0 == kind).collect();
+    for (kind, on_lattice) in ORDER.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
+        let of_batch = all.iter().zip(woven).filter(|&(spring, &woven)| spring.0 == kind && woven == on_lattice);
+        let mut left: Vec<Spring> = of_batch.map(|(&(_, spring), _)| spring).collect();
         // Last colour, counted from one, that used a particle.
-        let mut used_by = vec![0; rest.len()];
+        let mut used_by = vec![0; count];
         for color in 1.. {
             if left.is_empty() {
                 break;
             }
             let start = springs.len();
-            left.retain(|&(_, a, b)| {
-                let is_free = used_by[a as usize] != color && used_by[b as usize] != color;
+            left.retain(|&spring| {
+                let ends = [spring.a as usize, spring.b as usize];
+                let is_free = ends.iter().all(|&end| used_by[end] != color);
                 if is_free {
-                    used_by[a as usize] = color;
-                    used_by[b as usize] = color;
-                    let rest = rest[a as usize].distance(rest[b as usize]);
-                    springs.push(Spring { a, b, rest });
+                    for end in ends {
+                        used_by[end] = color;
+                    }
+                    springs.push(spring);
                 }
                 !is_free
             });
-            batches.push(SpringBatch { kind, range: start..springs.len() });
+            batches.push(SpringBatch { kind, range: start..springs.len(), woven: on_lattice });
         }
     }
     (springs, batches)

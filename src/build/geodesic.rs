@@ -21,7 +21,7 @@ use std::collections::BinaryHeap;
 
 use bevy::{math::FloatOrd, prelude::*};
 
-use crate::solver::{GrabTether, Tether, Topology};
+use crate::solver::{GrabTether, Tether, Tethers, Topology};
 
 /// Most pins that hold one particle.
 const MOST_TETHERS: usize = 4;
@@ -29,26 +29,45 @@ const MOST_TETHERS: usize = 4;
 /// A pin adds nothing where a nearer one is closer to it than this share of its own distance.
 const TELLING_APART: f32 = 0.8;
 
-/// Tethers of every particle to the nearest few of `pins` (indices of particles), sorted by pin.
+/// Tethers of every particle to the nearest few of `pins` (indices of particles).
 ///
 /// A tether is as long as the cloth between its ends; a particle that no pin can reach has none.
-pub fn tethers(topology: &Topology, pins: &[u32]) -> Vec<Tether> {
-    let mut search = Search::new(topology);
-    for &pin in pins {
-        search.propose(pin, pin, 0.0);
+pub fn tethers(topology: &Topology, pins: &[u32]) -> Tethers {
+    let mut tying = Tying::begin(topology, pins);
+    tying.go_on(topology, usize::MAX);
+    tying.finish(topology)
+}
+
+/// Tethers that are being worked out, a part at a time.
+#[derive(Clone, Debug)]
+pub(crate) struct Tying {
+    search: Search,
+}
+
+impl Tying {
+    /// Begins at `pins`.
+    pub fn begin(topology: &Topology, pins: &[u32]) -> Self {
+        let mut search = Search::new(topology);
+        for &pin in pins {
+            search.propose(pin, pin, 0.0);
+        }
+        Self { search }
     }
-    search.run();
-    let is_pin = |particle: &usize| search.labels[*particle].first().is_some_and(|l| l.distance == 0.0);
-    let held = (0..topology.particle_count()).filter(|particle| !is_pin(particle));
-    let mut tethers: Vec<Tether> = held
-        .flat_map(|particle| {
-            let labels = search.labels[particle].iter();
-            labels.map(move |label| Tether { particle: particle as u32, pin: label.pin, length: label.distance })
-        })
-        .collect();
-    // Tethers in a row are of different particles, so none waits for the one before.
-    tethers.sort_unstable_by_key(|tether| (tether.pin, tether.particle));
-    tethers
+
+    /// Settles as many as `most` distances. True where all are settled.
+    pub fn go_on(&mut self, topology: &Topology, most: usize) -> bool {
+        self.search.run(&topology.rest, most)
+    }
+
+    /// The tethers, once all are settled.
+    pub fn finish(&self, topology: &Topology) -> Tethers {
+        let is_pin = |labels: &[Label]| labels.first().is_some_and(|label| label.distance == 0.0);
+        let held = (0..).zip(&self.search.labels).filter(|(_, labels)| !is_pin(labels));
+        let tether = |particle, label: &Label| Tether { particle, pin: label.pin, length: label.distance };
+        let tethers: Vec<Tether> =
+            held.flat_map(|(particle, labels)| labels.iter().map(move |label| tether(particle, label))).collect();
+        Tethers::new(&tethers, topology)
+    }
 }
 
 /// Tethers of all other particles to a point of a triangle, given by its barycentric `weights`. Sorted by particle.
@@ -62,7 +81,7 @@ pub fn grab_tethers(topology: &Topology, triangle: [u32; 3], weights: [f32; 3]) 
         // The point isn't a particle: one of its corners names it.
         search.propose(particle, triangle[0], corner.distance(point));
     }
-    search.run();
+    search.run(&topology.rest, usize::MAX);
     let reached = (0..).zip(&search.labels).filter(|(particle, _)| !triangle.contains(particle));
     reached.filter_map(|(particle, labels)| Some(GrabTether { particle, length: labels.first()?.distance })).collect()
 }
@@ -74,8 +93,8 @@ struct Label {
     distance: f32,
 }
 
-struct Search<'a> {
-    rest: &'a [Vec3],
+#[derive(Clone, Debug)]
+struct Search {
     /// Triangles at each particle, as the other two corners; cells are split along both diagonals.
     fans: Vec<Vec<[u32; 2]>>,
     /// What is settled, nearest first.
@@ -86,8 +105,8 @@ struct Search<'a> {
     queue: BinaryHeap<Reverse<(FloatOrd, u32, u32)>>,
 }
 
-impl<'a> Search<'a> {
-    fn new(topology: &'a Topology) -> Self {
+impl Search {
+    fn new(topology: &Topology) -> Self {
         let mut fans = vec![Vec::new(); topology.particle_count()];
         let crossed = topology.cells.iter().flat_map(|&[a, b, c, d]| [[a, b, d], [b, c, d]]);
         for [i, j, k] in topology.triangles.iter().copied().chain(crossed) {
@@ -96,7 +115,6 @@ impl<'a> Search<'a> {
             fans[k as usize].push([i, j]);
         }
         Self {
-            rest: &topology.rest,
             fans,
             labels: vec![Vec::new(); topology.particle_count()],
             proposed: vec![Vec::new(); topology.particle_count()],
@@ -114,35 +132,40 @@ impl<'a> Search<'a> {
         self.queue.push(Reverse((FloatOrd(distance), particle, pin)));
     }
 
-    fn run(&mut self) {
-        while let Some(Reverse((FloatOrd(distance), particle, pin))) = self.queue.pop() {
-            if self.is_wanted(particle, pin, distance) {
+    /// Settles as many as `most` distances on the rest shape `rest`. True where all are settled.
+    fn run(&mut self, rest: &[Vec3], most: usize) -> bool {
+        let mut settled = 0;
+        while settled < most {
+            let Some(Reverse((FloatOrd(distance), particle, pin))) = self.queue.pop() else { return true };
+            if self.is_wanted(rest, particle, pin, distance) {
                 self.labels[particle as usize].push(Label { pin, distance });
-                self.spread(particle, pin, distance);
+                self.spread(rest, particle, pin, distance);
+                settled += 1;
             }
         }
+        self.queue.is_empty()
     }
 
-    fn is_wanted(&self, particle: u32, pin: u32, distance: f32) -> bool {
+    fn is_wanted(&self, rest: &[Vec3], particle: u32, pin: u32, distance: f32) -> bool {
         let labels = &self.labels[particle as usize];
-        let place = self.rest[pin as usize];
+        let place = rest[pin as usize];
         labels.len() < MOST_TETHERS
             && labels.iter().all(|label| {
-                let apart = place.distance(self.rest[label.pin as usize]);
+                let apart = place.distance(rest[label.pin as usize]);
                 label.pin != pin && apart >= TELLING_APART * distance
             })
     }
 
     /// Proposes distances for all neighbours of a particle that has just been settled.
-    fn spread(&mut self, particle: u32, pin: u32, distance: f32) {
+    fn spread(&mut self, rest: &[Vec3], particle: u32, pin: u32, distance: f32) {
         for index in 0..self.fans[particle as usize].len() {
             let [a, b] = self.fans[particle as usize][index];
             for (known, unknown) in [(a, b), (b, a)] {
                 if let Some(length) = self.distance_to(pin, known) {
-                    let length = self.unfold([particle, known], [distance, length], unknown);
+                    let length = unfold(rest, [particle, known], [distance, length], unknown);
                     self.propose(unknown, pin, length);
                 }
-                let along = distance + self.edge(particle, unknown);
+                let along = distance + edge(rest, particle, unknown);
                 self.propose(unknown, pin, along);
             }
         }
@@ -152,26 +175,26 @@ impl<'a> Search<'a> {
         let label = self.labels[particle as usize].iter().find(|label| label.pin == pin)?;
         Some(label.distance)
     }
+}
 
-    fn edge(&self, p: u32, q: u32) -> f32 {
-        self.rest[p as usize].distance(self.rest[q as usize])
-    }
+fn edge(rest: &[Vec3], p: u32, q: u32) -> f32 {
+    rest[p as usize].distance(rest[q as usize])
+}
 
-    /// Distance of `c` from the source that is `distance` away from `a` and `b`.
-    fn unfold(&self, [a, b]: [u32; 2], distance: [f32; 2], c: u32) -> f32 {
-        let (ab, ac, bc) = (self.edge(a, b), self.edge(a, c), self.edge(b, c));
-        let along_edges = (distance[0] + ac).min(distance[1] + bc);
-        if ab <= 0.0 {
-            return along_edges;
-        }
-        // In the plane, a at 0, b at (ab, 0), c above the line and the source below it.
-        let place = |from_a: f32, from_b: f32| {
-            let x = (from_a * from_a - from_b * from_b + ab * ab) / (2.0 * ab);
-            Vec2::new(x, (from_a * from_a - x * x).max(0.0).sqrt())
-        };
-        let (c, s) = (place(ac, bc), place(distance[0], distance[1]) * Vec2::new(1.0, -1.0));
-        let height = c.y - s.y;
-        let crossing = s.x + (c.x - s.x) * if height > 0.0 { -s.y / height } else { 0.0 };
-        if (0.0..=ab).contains(&crossing) { c.distance(s).min(along_edges) } else { along_edges }
+/// Distance of `c` from the source that is `distance` away from `a` and `b`.
+fn unfold(rest: &[Vec3], [a, b]: [u32; 2], distance: [f32; 2], c: u32) -> f32 {
+    let (ab, ac, bc) = (edge(rest, a, b), edge(rest, a, c), edge(rest, b, c));
+    let along_edges = (distance[0] + ac).min(distance[1] + bc);
+    if ab <= 0.0 {
+        return along_edges;
     }
+    // In the plane, a at 0, b at (ab, 0), c above the line and the source below it.
+    let place = |from_a: f32, from_b: f32| {
+        let x = (from_a * from_a - from_b * from_b + ab * ab) / (2.0 * ab);
+        Vec2::new(x, (from_a * from_a - x * x).max(0.0).sqrt())
+    };
+    let (c, s) = (place(ac, bc), place(distance[0], distance[1]) * Vec2::new(1.0, -1.0));
+    let height = c.y - s.y;
+    let crossing = s.x + (c.x - s.x) * if height > 0.0 { -s.y / height } else { 0.0 };
+    if (0.0..=ab).contains(&crossing) { c.distance(s).min(along_edges) } else { along_edges }
 }

@@ -178,6 +178,7 @@ impl CandidateItem<'_, '_> {
             particles: Particles::at_rest(rest, &plan.topology, &material),
             origin: pose.translation.into(),
             particle_of_vertex: plan.binding.particle_of_vertex.clone(),
+            effort: self.cloth.effort(&plan.topology),
             topology: plan.topology,
             settings: Cloth::clone(&self.cloth),
             material: Some(material),

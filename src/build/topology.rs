@@ -2,28 +2,68 @@
 
 use bevy::{platform::collections::HashSet, prelude::*};
 
-use super::{cells, coloring, edges::Edges, springs};
-use crate::{error::ClothError, solver::Topology};
+use super::{
+    cells::{self, Cells},
+    chart, coloring,
+    edges::Edges,
+    lattice::{self, Rectangle},
+    levels, springs,
+};
+use crate::{
+    error::ClothError,
+    solver::{Spring, Topology},
+};
 
 /// A triangle with less area than this share of its longest side squared is a sliver.
 const SLIVER: f32 = 1e-6;
 
-/// The topology of the particles at `rest` (m) joined by `triangles`.
-///
-/// Triangles that repeat others, as the back of a sheet modelled with two sides does, count once. Triangles without
-/// area keep their edges as springs, and neither weigh nor catch wind.
-pub(crate) fn build(rest: &[Vec3], triangles: &[[u32; 3]]) -> Result<Topology, ClothError> {
-    let (triangles, slivers) = sort_out(rest, triangles);
-    if triangles.is_empty() {
-        return Err(ClothError::Empty);
+/// What the triangles of a mesh form.
+#[derive(Debug)]
+pub(super) struct Shape {
+    triangles: Vec<[u32; 3]>,
+    slivers: Vec<[u32; 3]>,
+    pub edges: Edges,
+    cells: Cells,
+    pub rectangle: Option<Rectangle>,
+}
+
+impl Shape {
+    /// Looks at particles at `rest` (m) joined by `triangles`.
+    ///
+    /// Triangles that repeat others, as the back of a sheet modelled with two sides does, count once. Triangles without
+    /// area keep their edges as springs, and neither weigh nor catch wind.
+    pub fn find(rest: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ClothError> {
+        let (triangles, slivers) = sort_out(rest, triangles);
+        if triangles.is_empty() {
+            return Err(ClothError::Empty);
+        }
+        let edges = Edges::new(&triangles);
+        let cells = cells::find(rest, &triangles, &edges);
+        let rectangle = lattice::find(&cells, rest.len());
+        Ok(Self { triangles, slivers, edges, cells, rectangle })
     }
-    let edges = Edges::new(&triangles);
-    let cells = cells::find(rest, &triangles, &edges);
-    let links = springs::find(rest, &triangles, &slivers, &edges, &cells);
-    let (springs, batches) = coloring::batches(rest, &links);
-    let triangle_areas: Vec<f32> = triangles.iter().map(|triangle| triangle_area(rest, triangle)).collect();
+}
+
+/// The topology of the particles at `rest` (m) that form a `shape`. `uvs` are those of the particles, where they have
+/// one each.
+pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>) -> Topology {
+    let Shape { triangles, slivers, edges, cells, rectangle } = shape;
+    let links = springs::find(&rest, &triangles, &slivers, &edges, &cells);
+    let with_length =
+        |&(kind, a, b): &springs::Link| (kind, Spring { a, b, rest: rest[a as usize].distance(rest[b as usize]) });
+    let all: Vec<_> = links.iter().map(with_length).collect();
+    let woven = rectangle.filter(Rectangle::is_in_order).map(|rectangle| lattice::weave(&rectangle, &all));
+    let (lattice, woven) = woven.map_or((None, vec![false; all.len()]), |(lattice, woven)| (Some(lattice), woven));
+    let levels = match &lattice {
+        Some(lattice) => levels::of_lattice(lattice),
+        None => chart::find(&rest, &triangles, uvs)
+            .map(|chart| levels::of_chart(&rest, &triangles, &chart))
+            .unwrap_or_default(),
+    };
+    let (springs, batches) = coloring::batches(rest.len(), &all, &woven);
+    let triangle_areas: Vec<f32> = triangles.iter().map(|triangle| triangle_area(&rest, triangle)).collect();
     let areas = particle_areas(rest.len(), &triangles, &triangle_areas);
-    Ok(Topology { rest: rest.to_vec(), springs, batches, triangles, triangle_areas, areas, cells: cells.corners })
+    Topology { rest, springs, batches, triangles, triangle_areas, areas, cells: cells.corners, lattice, levels }
 }
 
 /// Splits triangles with distinct corners into those with an area and slivers, and drops repetitions.

@@ -20,6 +20,28 @@ pub(crate) struct Welded {
     pub vertex_of_particle: Vec<u32>,
 }
 
+impl Welded {
+    /// Numbers the particles anew: the first is to be what is now number `order[0]`.
+    pub fn reorder(&mut self, order: &[u32]) {
+        let mut new_number = vec![NO_PARTICLE; order.len()];
+        for (new, &old) in (0..).zip(order) {
+            new_number[old as usize] = new;
+        }
+        for particle in self.particle_of_vertex.iter_mut().filter(|particle| **particle != NO_PARTICLE) {
+            *particle = new_number[*particle as usize];
+        }
+        self.vertex_of_particle = order.iter().map(|&old| self.vertex_of_particle[old as usize]).collect();
+    }
+
+    /// One value for each particle, if its vertices have the same one.
+    pub fn shared(&self, of_vertices: &[Vec2]) -> Option<Vec<Vec2>> {
+        let values: Vec<Vec2> = self.vertex_of_particle.iter().map(|&vertex| of_vertices[vertex as usize]).collect();
+        let of_particle = |particle: u32| values.get(particle as usize);
+        let mut vertices = self.particle_of_vertex.iter().zip(of_vertices);
+        vertices.all(|(&particle, value)| of_particle(particle).is_none_or(|of| of == value)).then_some(values)
+    }
+}
+
 /// Welds the vertices that `triangles` use. Particles are numbered in the order of their first vertex.
 pub(crate) fn weld(positions: &[Vec3], triangles: &[[u32; 3]]) -> Welded {
     let mut used = vec![false; positions.len()];

@@ -28,7 +28,7 @@ pub(super) fn draw_tethers(lines: &mut Lines, shown: &Shown) {
     let state = shown.state;
     let slack = state.settings.tether_slack.unwrap_or_default();
     let position = &state.particles.position;
-    for &Tether { particle, pin, length } in state.tethers() {
+    for Tether { particle, pin, length } in state.tethers() {
         let (particle, pin) = (particle as usize, pin as usize);
         let is_taut = position[particle].distance(position[pin]) >= TAUT_FROM * length * (1.0 + slack);
         let color = if is_taut { palette::TAUT } else { palette::SLACK };

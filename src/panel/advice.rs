@@ -124,7 +124,7 @@ pub(super) fn overload(state: &ClothState, gravity: Vec3, kinetic: f32) -> Optio
         .sum();
     let mass = material.density * topology.areas.iter().sum::<f32>();
     let weight = mass * gravity.length() * state.settings.gravity_scale.abs();
-    let blown: f32 = state.work.scratch.steady_force.iter().map(|force| force.length()).sum();
+    let blown = state.report.map_or(0.0, |report| report.steady_force);
     let pulled = (weight + blown) * reach(topology) + 2.0 * kinetic;
     Some(carried / pulled.max(f32::MIN_POSITIVE))
 }

@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn components_are_written_as_they_are_in_rust() {
-        assert_written(written!(Cloth { substeps: 12, ..default() }));
+        assert_written(written!(Cloth { substeps: Some(12), ..default() }));
         assert_written(written!(Cloth {
             solver: ClothSolver::Explicit,
             gravity_scale: -0.5,

@@ -12,15 +12,44 @@ use crate::cloth::{Cloth, ClothSolver};
 /// Cloths for which advice is shown. More would push all else out of the window.
 const MOST_ADVICE: usize = 3;
 
+/// Substeps to begin with where they are set by hand.
+const BEGUN_SUBSTEPS: u32 = 8;
+
+const MAX_STRAIN: Knob = Knob::new(
+    "Most stretch",
+    "",
+    (0.001, 0.1),
+    (0.0001, 1.0),
+    "The most that threads are to be stretched, without a unit, if their stiffness can hold it. 0.001 to 0.1. Substeps are \
+     chosen by it. The smaller, the more it costs, and the livelier the cloth.",
+)
+.logarithmic(0.001);
+const BY_HAND: Naming = naming(
+    "Substeps by hand",
+    "Sets the number of substeps. Without it, they follow from the most stretch, and are 8 at least near obstacles.",
+);
 const SUBSTEPS: Knob = Knob::new(
     "Substeps",
     "",
     (1.0, 64.0),
     (1.0, 1000.0),
-    "Substeps per step of XPBD. 8 for most, 16 and more for fine meshes and stiff cloth. Twice as many cost twice the \
-     time and let cloth stretch about a third as much.",
+    "Substeps per step. 2 to 8 for strands, 8 and more for XPBD. Twice as many cost twice the time and let cloth stretch \
+     half to a third as much.",
 )
 .whole();
+const LEVELS: Naming = naming(
+    "Coarse levels",
+    "Pulls travel far across the cloth in few substeps. Strands only; without them, fine meshes stretch more.",
+);
+const MAX_VELOCITY: Knob = Knob::new(
+    "Largest speed",
+    "m/s",
+    (1.0, 100.0),
+    (0.01, 10_000.0),
+    "The most that a particle may be faster than what the cloth is pinned to, in m/s. 50 is faster than any storm; less \
+     calms particles that thrash about.",
+)
+.logarithmic(1.0);
 const MAX_SUBSTEPS: Knob = Knob::new(
     "Most substeps",
     "",
@@ -32,8 +61,8 @@ const MAX_SUBSTEPS: Knob = Knob::new(
 .whole();
 const TETHERS: Naming = naming(
     "Tethers",
-    "Keeps every particle within the cloth's own length of its pins: the cure for cloth that stretches like rubber. XPBD \
-     only.",
+    "Keeps every particle within the cloth's own length of its pins: the cure for cloth that stretches like rubber. Not \
+     for the explicit solver.",
 );
 const SLACK: Knob = Knob::new(
     "Tether slack",
@@ -44,8 +73,9 @@ const SLACK: Knob = Knob::new(
      it tremble.",
 );
 
-const SOLVERS: [(ClothSolver, &str, &str); 2] = [
-    (ClothSolver::Xpbd, "XPBD", "Stable at any stiffness and time step. For games."),
+const SOLVERS: [(ClothSolver, &str, &str); 3] = [
+    (ClothSolver::Strands, "Strands", "Each thread solved exactly: the least stretch for the time. For games."),
+    (ClothSolver::Xpbd, "XPBD", "Spring by spring: stable as well, and stretched more."),
     (ClothSolver::Explicit, "Explicit", "The textbook form: the most accurate, and many times as costly."),
 ];
 
@@ -54,14 +84,22 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
         let Model { settings, differing, .. } = &mut *model;
         let Some((cloth, _)) = &mut settings.cloth else { return };
         let differs = |field| differing.contains(&field);
-        let which = naming("Solver", "How the springs are integrated: XPBD for games, explicit to compare with.");
+        let which = naming("Solver", "How the springs are integrated: strands for games, the others to compare with.");
         if let Some(solver) = choice(ui, which, differs("solver"), Some(cloth.solver), "", &SOLVERS) {
             cloth.solver = solver;
         }
         match cloth.solver {
-            ClothSolver::Xpbd => {
-                SUBSTEPS.show_count(ui, &mut cloth.substeps, differs("substeps"));
+            ClothSolver::Strands => {
+                MAX_STRAIN.show(ui, &mut cloth.max_strain, differs("max_strain"));
+                show_substeps(ui, cloth, differs("substeps"));
+                show_levels(ui, cloth, differs("levels"));
                 show_tethers(ui, cloth, differs("tether_slack"));
+                MAX_VELOCITY.show(ui, &mut cloth.max_velocity, differs("max_velocity"));
+            }
+            ClothSolver::Xpbd => {
+                show_substeps(ui, cloth, differs("substeps"));
+                show_tethers(ui, cloth, differs("tether_slack"));
+                MAX_VELOCITY.show(ui, &mut cloth.max_velocity, differs("max_velocity"));
             }
             ClothSolver::Explicit => {
                 MAX_SUBSTEPS.show_count(ui, &mut cloth.max_substeps, differs("max_substeps"));
@@ -69,6 +107,23 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
         }
         show_advice(ui, model);
     });
+}
+
+fn show_substeps(ui: &mut Ui, cloth: &mut Cloth, differs: bool) {
+    let mut is_on = cloth.substeps.is_some();
+    if tick(ui, BY_HAND, differs, &mut is_on) {
+        cloth.substeps = is_on.then_some(BEGUN_SUBSTEPS);
+    }
+    if let Some(substeps) = &mut cloth.substeps {
+        SUBSTEPS.show_count(ui, substeps, differs);
+    }
+}
+
+fn show_levels(ui: &mut Ui, cloth: &mut Cloth, differs: bool) {
+    let mut is_on = cloth.levels.as_ref().is_none_or(|levels| !levels.is_empty());
+    if tick(ui, LEVELS, differs, &mut is_on) {
+        cloth.levels = if is_on { None } else { Some(Vec::new()) };
+    }
 }
 
 fn show_tethers(ui: &mut Ui, cloth: &mut Cloth, differs: bool) {

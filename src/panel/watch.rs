@@ -97,9 +97,10 @@ fn add(readings: &mut Readings, state: &ClothState, strain: Strain, gravity: Vec
 }
 
 fn situation(state: &ClothState, watch: &Watch) -> Option<Situation> {
-    let Cloth { solver, substeps, max_substeps, tether_slack, .. } = state.settings;
+    let Cloth { solver, max_substeps, tether_slack, .. } = state.settings;
+    let substeps = state.report()?.substeps;
     let stiffness_scale = match solver {
-        ClothSolver::Xpbd => 1.0,
+        ClothSolver::Strands | ClothSolver::Xpbd => 1.0,
         ClothSolver::Explicit => state.report()?.stiffness_scale,
     };
     let (strain, overload) = watch.medians().unwrap_or_default();

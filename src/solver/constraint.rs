@@ -1,6 +1,9 @@
 //! What holds particles together: each constraint moves positions, once a substep.
 
-pub mod anchor;
+pub(super) mod anchor;
 pub mod grab;
+pub(super) mod level;
 pub mod spring;
+pub(super) mod strand;
 pub mod tether;
+pub(super) mod weave;

@@ -10,9 +10,12 @@ use core::ops::Range;
 
 use bevy::math::{Isometry3d, Quat, Vec3A};
 
-use super::{Material, Particles};
+use super::{Lanes, Material, Particles};
 
 pub mod shape;
+
+/// The way that a cloth may gain on an obstacle within a step by what pulls and pushes at it, m.
+const GAINED: f32 = 0.01;
 
 pub use shape::{ColliderShape, Surface};
 
@@ -43,20 +46,43 @@ impl Obstacle {
     }
 }
 
+/// Whether an obstacle is so near that the cloth may touch it within a step of `dt` seconds.
+pub(super) fn is_any_near(particles: &Particles, obstacles: &[Obstacle], thickness: f32, dt: f32) -> bool {
+    if obstacles.is_empty() {
+        return false;
+    }
+    let (low, high) = particles
+        .position
+        .iter()
+        .fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+    let fastest = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
+    let (centre, radius) = ((low + high) / 2.0, low.distance(high) / 2.0);
+    // A step ahead, and once more for what it gains in speed.
+    let reach = radius + thickness + 2.0 * fastest * dt + GAINED;
+    obstacles.iter().any(|obstacle| {
+        let way = obstacle.start.translation.distance(obstacle.end.translation);
+        [obstacle.start, obstacle.end]
+            .iter()
+            .any(|pose| obstacle.shape.surface(pose.inverse().transform_point(centre)).distance <= reach + way)
+    })
+}
+
 /// Projects all free particles out of all obstacles within the part `span` (0..=1) of the step. Returns the number of
 /// contacts.
-pub fn project(particles: &mut Particles, obstacles: &[Obstacle], material: &Material, span: Range<f32>) -> u32 {
+pub(super) fn project(lanes: &mut Lanes, obstacles: &[Obstacle], material: &Material, span: Range<f32>) -> u32 {
     let mut contacts = 0;
     for obstacle in obstacles {
         let moving = MovingShape::new(obstacle, material.thickness, span.clone());
         let friction = material.friction * obstacle.friction;
-        for i in 0..particles.position.len() {
-            if particles.inverse_mass[i] == 0.0 {
+        for i in 0..lanes.slot_count() {
+            if lanes.inverse_mass(i) == 0.0 {
                 continue;
             }
-            let (position, previous) = (&mut particles.position[i], &mut particles.previous[i]);
-            if let Some(push) = moving.push(*position, *previous) {
-                push.apply(position, previous, friction);
+            let (mut position, mut previous) = (lanes.position.get(i), lanes.previous.get(i));
+            if let Some(push) = moving.push(position, previous) {
+                push.apply(&mut position, &mut previous, friction);
+                lanes.position.set(i, position);
+                lanes.previous.set(i, previous);
                 contacts += 1;
             }
         }

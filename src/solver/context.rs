@@ -2,13 +2,16 @@
 
 use bevy::math::Vec3A;
 
-use super::{Grab, Material, Obstacle, Tether, WindSource};
+use super::{Effort, Grab, Material, Obstacle, Tethers, WindSource};
 
 /// How the springs are integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Extended position-based dynamics with small steps: stable at any stiffness.
+    /// Extended position-based dynamics, with each thread of the cloth solved exactly and coarse levels for the long
+    /// waves: stable at any stiffness, and stretched least.
     #[default]
+    Strands,
+    /// Extended position-based dynamics, spring by spring in colours: stable at any stiffness.
     Xpbd,
     /// Forces and symplectic Euler, the textbook form: accurate, and costly where springs are stiff.
     Explicit,
@@ -32,8 +35,8 @@ pub struct StepContext<'a> {
     pub dt: f32,
     /// How the springs are integrated.
     pub method: Method,
-    /// Substeps a step, at least 1. [`Method::Explicit`] finds its own number.
-    pub substeps: u32,
+    /// Substeps a step, and levels. [`Method::Explicit`] finds its own number, [`Method::Xpbd`] has no levels.
+    pub effort: &'a Effort,
     /// The most substeps that [`Method::Explicit`] may take.
     pub max_substeps: u32,
     /// What the cloth is made of.
@@ -44,8 +47,10 @@ pub struct StepContext<'a> {
     pub anchors: &'a [Anchor],
     /// Hands that pull at the cloth.
     pub grabs: &'a [Grab],
-    /// Longest allowed distances to fixed particles. Used by [`Method::Xpbd`] only.
-    pub tethers: &'a [Tether],
+    /// The most that a particle may be faster than what holds the cloth, m/s. Not for [`Method::Explicit`].
+    pub max_velocity: f32,
+    /// Longest allowed distances to fixed particles. Not for [`Method::Explicit`].
+    pub tethers: Option<&'a Tethers>,
     /// By how much of its length a tether gives, no unit. 0.002 to 0.01.
     pub tether_slack: f32,
     /// Obstacles and their way.
@@ -68,4 +73,6 @@ pub struct StepReport {
     pub stiffness_scale: f32,
     /// Contacts in the last substep: pairs of a particle and an obstacle.
     pub contacts: u32,
+    /// Sum of the external forces and those of the air on all particles, whatever their direction, N.
+    pub steady_force: f32,
 }

@@ -2,7 +2,9 @@
 //!
 //! Exact where its step is small, and therefore also what the other solver is tested against.
 
-use super::{Material, Particles, Scratch, Spring, SpringConstants, StepContext, Topology};
+use bevy::math::Vec3A;
+
+use super::{Lanes, Material, Particles, Spring, SpringConstants, StepContext, Topology};
 
 /// What ω² h² + 2 γ h may come to. Symplectic Euler is stable below 4: a tenth of it is left for cloth that
 /// is bent out of its rest shape.
@@ -15,15 +17,16 @@ const STABLE: f32 = 3.6;
 /// and γ of the whole cloth are bounded by Gershgorin's circles, twice the sum over a particle's springs of k/m and of
 /// c/m.
 pub(super) fn stable_substeps(
-    particles: &Particles,
+    lanes: &Lanes,
     topology: &Topology,
     ctx: &StepContext,
     dt: f32,
-    scratch: &mut Scratch,
+    sums: &mut Vec<(f32, f32)>,
 ) -> (u32, f32) {
-    sum_spring_constants(topology, &ctx.material, scratch);
+    sum_spring_constants(topology, &ctx.material, sums);
     let (mut omega_squared, mut gamma) = (0.0_f32, 0.0_f32);
-    for (&w, &(k, c)) in particles.inverse_mass.iter().zip(&scratch.spring_sums) {
+    for (particle, &(k, c)) in (0..).zip(&*sums) {
+        let w = lanes.inverse_mass(lanes.order.slot(particle));
         omega_squared = omega_squared.max(2.0 * k * w);
         gamma = gamma.max(2.0 * c * w);
     }
@@ -39,13 +42,14 @@ pub(super) fn stable_substeps(
 }
 
 /// Adds up stiffness and damping of the springs at each particle.
-fn sum_spring_constants(topology: &Topology, material: &Material, scratch: &mut Scratch) {
-    scratch.spring_sums.fill((0.0, 0.0));
+fn sum_spring_constants(topology: &Topology, material: &Material, sums: &mut Vec<(f32, f32)>) {
+    sums.clear();
+    sums.resize(topology.particle_count(), (0.0, 0.0));
     for batch in &topology.batches {
         let SpringConstants { stiffness, damping } = material.spring(batch.kind);
         for spring in &topology.springs[batch.range.clone()] {
             for particle in [spring.a, spring.b] {
-                let (k, c) = &mut scratch.spring_sums[particle as usize];
+                let (k, c) = &mut sums[particle as usize];
                 *k += stiffness;
                 *c += damping;
             }
@@ -53,16 +57,14 @@ fn sum_spring_constants(topology: &Topology, material: &Material, scratch: &mut 
     }
 }
 
-/// Sums steady and spring forces: F = k (L0 - |p - q|) n - c ((vp - vq)·n) n with n = (p - q) / |p - q|.
-pub(super) fn sum_forces(
+/// Adds the springs' forces: F = k (L0 - |p - q|) n - c ((vp - vq)·n) n with n = (p - q) / |p - q|.
+pub(super) fn add_spring_forces(
     particles: &Particles,
     topology: &Topology,
     material: &Material,
     stiffness_scale: f32,
-    scratch: &mut Scratch,
+    force: &mut [Vec3A],
 ) {
-    let Scratch { steady_force, force, .. } = scratch;
-    force.copy_from_slice(steady_force);
     for batch in &topology.batches {
         let SpringConstants { stiffness, damping } = material.spring(batch.kind);
         let (k, c) = (stiffness * stiffness_scale, damping * stiffness_scale);

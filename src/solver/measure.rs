@@ -80,7 +80,7 @@ mod tests {
         };
         let topology = Topology {
             springs: vec![Spring { a: 0, b: 1, rest: 2.0 }],
-            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1 }],
+            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1, woven: false }],
             areas: vec![1.0; 2],
             ..Default::default()
         };

@@ -11,8 +11,6 @@ use super::{Material, Topology};
 pub struct Particles {
     /// Position, m.
     pub position: Vec<Vec3A>,
-    /// Position at the start of the current substep, m.
-    pub previous: Vec<Vec3A>,
     /// Velocity, m/s. A fixed particle has the velocity of its pin.
     pub velocity: Vec<Vec3A>,
     /// Inverse mass, 1/kg. Zero for a fixed particle, which no force and no constraint moves.
@@ -26,7 +24,6 @@ impl Particles {
     pub fn at_rest(position: Vec<Vec3A>, topology: &Topology, material: &Material) -> Self {
         let count = position.len();
         let mut particles = Self {
-            previous: position.clone(),
             position,
             velocity: vec![Vec3A::ZERO; count],
             inverse_mass: vec![0.0; count],

@@ -3,10 +3,19 @@
 use bevy::math::{Vec3A, ops};
 
 use super::{
-    Method, Particles, Scratch, StepContext, StepReport, Topology,
-    constraint::{anchor, grab, spring, tether},
+    LevelPass, Method, Particles, Scratch, StepContext, StepReport, Topology,
+    constraint::{
+        anchor, grab,
+        level::LevelRun,
+        spring::{self, Scaled},
+        strand::Both,
+        tether,
+        weave::{self, Last, Sheet, Yarn},
+    },
     contact, explicit,
     force::wind,
+    integrate::{self, Motion, SpeedLimit},
+    topology::SpringKind,
 };
 
 /// Longest time step that is simulated, s. A longer one is cut down to it: after a stall the cloth falls behind the
@@ -27,86 +36,186 @@ const AIR_RATE: f32 = 160.0;
 pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, scratch: &mut Scratch) -> StepReport {
     let dt = ctx.dt.min(MAX_TIME_STEP);
     if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
-        return StepReport { substeps: 0, needed_substeps: 0, stiffness_scale: 1.0, contacts: 0 };
+        return StepReport { substeps: 0, needed_substeps: 0, stiffness_scale: 1.0, contacts: 0, steady_force: 0.0 };
     }
-    scratch.fit(topology);
-    grab::take_up(particles, ctx.grabs, &mut scratch.held);
+    let instructions = scratch.instructions;
+    scratch.lanes.load(particles, topology.order(), instructions);
+    grab::take_up(&mut scratch.lanes, ctx.grabs);
+    let is_near = contact::is_any_near(particles, ctx.obstacles, ctx.material.thickness, dt);
     let (most, needed_substeps, stiffness_scale) = match ctx.method {
-        Method::Xpbd => (u32::MAX, ctx.substeps.max(1), 1.0),
+        Method::Strands | Method::Xpbd => {
+            let wanted = if is_near { ctx.effort.contact_substeps } else { ctx.effort.substeps };
+            (u32::MAX, wanted.max(1), 1.0)
+        }
         Method::Explicit => {
-            let (needed, scale) = explicit::stable_substeps(particles, topology, ctx, dt, scratch);
+            let (needed, scale) =
+                explicit::stable_substeps(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
             (ctx.max_substeps.max(1), needed, scale)
         }
     };
+    let levels = match ctx.method {
+        Method::Strands if is_near => &ctx.effort.contact_levels,
+        Method::Strands => &ctx.effort.levels,
+        Method::Xpbd | Method::Explicit => &Vec::new(),
+    };
     let substeps = needed_substeps.min(most);
-    let h = dt / substeps as f32;
-    let decay = ops::exp(-ctx.material.damping * h);
-    let air_interval = ((1.0 / (AIR_RATE * h)) as u32).max(1);
+    let is_pushed = wind::feels_air(ctx) || particles.force.iter().any(|&force| force != Vec3A::ZERO);
+    let last = Last::between(ctx.anchors, topology.order());
+    let substep = Substep { topology, ctx, h: dt / substeps as f32, stiffness_scale, is_pushed, last, levels };
+    let limit = SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most: ctx.max_velocity };
+    let air_interval = ((1.0 / (AIR_RATE * substep.h)) as u32).max(1);
     let mut contacts = 0;
 
-    spring::weigh(particles, topology, &ctx.material, h, &mut scratch.spring_shares);
-    wind::sample_air(particles, ctx, scratch);
-    for substep in 0..substeps {
-        let start = substep as f32 / substeps as f32;
-        let end = (substep + 1) as f32 / substeps as f32;
-        if substep % air_interval == 0 {
-            wind::apply_air(particles, topology, ctx, h * air_interval as f32, scratch);
+    scratch.air.sample(particles, ctx);
+    substep.prepare(scratch);
+    for i in 0..substeps {
+        let span = i as f32 / substeps as f32..(i + 1) as f32 / substeps as f32;
+        if i % air_interval == 0 {
+            substep.renew_steady_force(particles, air_interval, scratch);
         }
-        grab::carry(particles, ctx.grabs, start..end, h);
+        grab::carry(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
+        if ctx.method == Method::Explicit {
+            substep.add_spring_forces(particles, scratch);
+        }
+        substep.move_freely(scratch);
+        anchor::advance(&mut scratch.lanes, ctx.anchors, span.end, dt);
         match ctx.method {
-            Method::Xpbd => {
-                integrate(particles, &scratch.steady_force, ctx.gravity, decay, h);
-                anchor::advance(particles, ctx.anchors, end, dt);
-                spring::solve(particles, topology, &ctx.material, h, &scratch.spring_shares);
-                grab::solve(particles, ctx.grabs, start..end, h);
-                grab::solve_tethers(particles, ctx.grabs, ctx.tether_slack);
-                // After those of the hands: where both can't hold, pins are stronger.
-                tether::solve(particles, ctx.tethers, ctx.tether_slack);
-            }
-            Method::Explicit => {
-                explicit::sum_forces(particles, topology, &ctx.material, stiffness_scale, scratch);
-                integrate(particles, &scratch.force, ctx.gravity, decay, h);
-                anchor::advance(particles, ctx.anchors, end, dt);
-                grab::solve(particles, ctx.grabs, start..end, h);
-            }
+            Method::Strands => substep.solve_strands(scratch),
+            Method::Xpbd => substep.solve_springs(scratch),
+            Method::Explicit => {}
         }
-        contacts = contact::project(particles, ctx.obstacles, &ctx.material, start..end);
+        grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
+        if ctx.method == Method::Xpbd {
+            // After the hands: where both can't hold, pins are stronger.
+            substep.solve_tethers(scratch);
+        }
+        if is_near {
+            contacts = contact::project(&mut scratch.lanes, ctx.obstacles, &ctx.material, span);
+        }
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
-        if ctx.method == Method::Xpbd || contacts > 0 || !ctx.grabs.is_empty() {
-            derive_velocities(particles, h);
+        if ctx.method != Method::Explicit || contacts > 0 || !ctx.grabs.is_empty() {
+            integrate::derive_velocities(&mut scratch.lanes, limit, substep.h, instructions);
         }
     }
-    grab::put_down(particles, &scratch.held);
-    StepReport { substeps, needed_substeps, stiffness_scale, contacts }
+    scratch.lanes.store(particles, instructions);
+    let steady_force = if is_pushed { scratch.steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
+    StepReport { substeps, needed_substeps, stiffness_scale, contacts, steady_force }
 }
 
-/// Symplectic Euler: velocities from forces (N) and gravity (m/s²), then positions from the new velocities.
-fn integrate(particles: &mut Particles, force: &[Vec3A], gravity: Vec3A, decay: f32, h: f32) {
-    let Particles { position, previous, velocity, inverse_mass, .. } = particles;
-    let count = position.len();
-    let (previous, velocity) = (&mut previous[..count], &mut velocity[..count]);
-    let (inverse_mass, force) = (&inverse_mass[..count], &force[..count]);
-    for i in 0..count {
-        previous[i] = position[i];
-        let w = inverse_mass[i];
-        if w > 0.0 {
-            velocity[i] = velocity[i] * decay + (gravity + force[i] * w) * h;
-            position[i] += velocity[i] * h;
+/// What all substeps of a step have in common.
+#[derive(Clone, Copy)]
+struct Substep<'a> {
+    topology: &'a Topology,
+    ctx: &'a StepContext<'a>,
+    /// Duration, s.
+    h: f32,
+    /// Share of the stiffness and damping that is used.
+    stiffness_scale: f32,
+    /// Whether anything but gravity acts.
+    is_pushed: bool,
+    last: Last,
+    levels: &'a [LevelPass],
+}
+
+impl Substep<'_> {
+    /// Works out what doesn't change from substep to substep.
+    fn prepare(&self, scratch: &mut Scratch) {
+        if let (Method::Strands, Some(lattice)) = (self.ctx.method, &self.topology.lattice) {
+            weave::masses_along_rows(lattice, &scratch.lanes.inverse_mass, &mut scratch.row_masses);
+        }
+        if let Some(run) = self.levels(scratch) {
+            scratch.levels.fit(&run, &scratch.lanes);
         }
     }
-}
 
-/// Velocities from the way that the particles went within the substep.
-///
-/// That is (position - previous) / h, written as what the constraints have added to the integrated velocity: a way of
-/// g h² is lost to rounding when h is small, a change of speed of g h isn't.
-fn derive_velocities(particles: &mut Particles, h: f32) {
-    let Particles { position, previous, velocity, .. } = particles;
-    let rate = 1.0 / h;
-    let count = position.len();
-    let (previous, velocity) = (&previous[..count], &mut velocity[..count]);
-    for i in 0..count {
-        let predicted = previous[i] + velocity[i] * h;
-        velocity[i] += (position[i] - predicted) * rate;
+    /// Sums up the forces that act for the next `interval` substeps.
+    fn renew_steady_force(&self, particles: &mut Particles, interval: u32, scratch: &mut Scratch) {
+        let Scratch { lanes, air, steady_force, applied_force, instructions, .. } = scratch;
+        if !self.is_pushed {
+            return;
+        }
+        steady_force.clone_from(&particles.force);
+        if wind::feels_air(self.ctx) {
+            lanes.store(particles, *instructions);
+            wind::apply_air(particles, self.topology, self.ctx, self.h * interval as f32, air, steady_force);
+        }
+        applied_force.load(lanes.order, steady_force, *instructions);
+    }
+
+    /// Adds the forces of the springs to the steady one.
+    fn add_spring_forces(&self, particles: &mut Particles, scratch: &mut Scratch) {
+        let Scratch { lanes, steady_force, force, applied_force, instructions, .. } = scratch;
+        steady_force.resize(particles.len(), Vec3A::ZERO);
+        force.clone_from(steady_force);
+        lanes.store(particles, *instructions);
+        explicit::add_spring_forces(particles, self.topology, &self.ctx.material, self.stiffness_scale, force);
+        applied_force.load(lanes.order, force, *instructions);
+    }
+
+    /// Moves the particles as if nothing held them together.
+    fn move_freely(&self, scratch: &mut Scratch) {
+        let Scratch { lanes, applied_force, instructions, .. } = scratch;
+        let decay = ops::exp(-self.ctx.material.damping * self.h);
+        let is_applied = self.is_pushed || self.ctx.method == Method::Explicit;
+        let force = is_applied.then_some(&*applied_force);
+        integrate::predict(lanes, Motion { gravity: self.ctx.gravity, force, decay, h: self.h }, *instructions);
+    }
+
+    /// Coarse levels, tethers, and then the springs: threads as strands, the last and best held.
+    fn solve_strands(&self, scratch: &mut Scratch) {
+        if let Some(run) = self.levels(scratch) {
+            let Scratch { lanes, loom, pins, levels, .. } = scratch;
+            pins.read(run.tethers, lanes);
+            levels.solve(&run, lanes, pins, loom);
+        }
+        self.solve_tethers(scratch);
+        let Scratch { lanes, beads, loom, row_masses, instructions, .. } = scratch;
+        let (material, h) = (&self.ctx.material, self.h);
+        let loose = self.topology.batches.iter().filter(|batch| !batch.woven);
+        spring::solve(lanes, self.topology, loose, material, h, beads, *instructions);
+        if let Some(lattice) = &self.topology.lattice {
+            let scaled = |kind| Scaled::new(material.spring(kind), h);
+            let mut sheet = Sheet {
+                position: &mut lanes.position.0,
+                previous: &lanes.previous.0,
+                inverse_mass: &lanes.inverse_mass,
+                row_masses,
+            };
+            weave::solve_diagonals(&mut sheet, lattice, scaled(SpringKind::Shear), *instructions);
+            let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
+            let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
+            weave::solve::<Both>(&mut sheet, lattice, yarn, self.last, loom, *instructions);
+        }
+    }
+
+    /// All springs, colour after colour.
+    fn solve_springs(&self, scratch: &mut Scratch) {
+        let batches = self.topology.batches.iter();
+        let Scratch { lanes, beads, instructions, .. } = scratch;
+        spring::solve(lanes, self.topology, batches, &self.ctx.material, self.h, beads, *instructions);
+    }
+
+    /// Tethers to hands, then those to pins.
+    fn solve_tethers(&self, scratch: &mut Scratch) {
+        let Scratch { lanes, pins, instructions, .. } = scratch;
+        grab::solve_tethers(lanes, self.ctx.grabs, self.ctx.tether_slack);
+        if let Some(tethers) = self.ctx.tethers {
+            pins.read(tethers, lanes);
+            let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
+            tether::solve(position, inverse_mass, tethers.of_cloth(), pins, self.ctx.tether_slack, *instructions);
+        }
+    }
+
+    /// The coarse levels, if there are tethers: both hold the cloth within its length.
+    fn levels(&self, scratch: &Scratch) -> Option<LevelRun<'_>> {
+        Some(LevelRun {
+            levels: &self.topology.levels,
+            passes: self.levels,
+            tethers: self.ctx.tethers.filter(|tethers| !tethers.is_empty())?,
+            slack: self.ctx.tether_slack,
+            stretch: Scaled::new(self.ctx.material.spring(SpringKind::Structural), self.h),
+            last: self.last,
+            instructions: scratch.instructions,
+        })
     }
 }

@@ -4,6 +4,8 @@ use core::ops::Range;
 
 use bevy::math::Vec3;
 
+use super::{Lattice, Level, lanes::Order};
+
 /// What a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SpringKind {
@@ -43,6 +45,8 @@ pub struct SpringBatch {
     pub kind: SpringKind,
     /// Their place in [`Topology::springs`].
     pub range: Range<usize>,
+    /// Whether [`Topology::lattice`] has them too: [`Method::Strands`](super::Method::Strands) solves them there.
+    pub woven: bool,
 }
 
 /// Springs, triangles and areas of a cloth's rest shape.
@@ -62,12 +66,21 @@ pub struct Topology {
     pub areas: Vec<f32>,
     /// Corners of each near-rectangle of two triangles, around it. The mesh's own diagonal joins the first and third.
     pub cells: Vec<[u32; 4]>,
+    /// The rows and columns that all particles are in, where they are in rows and columns.
+    pub lattice: Option<Lattice>,
+    /// Coarse lattices, the coarsest first.
+    pub levels: Vec<Level>,
 }
 
 impl Topology {
     /// Number of particles.
     pub fn particle_count(&self) -> usize {
         self.areas.len()
+    }
+
+    /// Where the particles stand while a step runs.
+    pub(super) fn order(&self) -> Order {
+        self.lattice.as_ref().map_or(Order::plain(self.particle_count()), Lattice::order)
     }
 
     /// All springs of one kind.

@@ -1,7 +1,7 @@
 //! Settings out of their range: refused at first, and ignored while the cloth runs.
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
+use bevy_drape::{prelude::*, solver::LevelPass};
 
 use crate::common::*;
 
@@ -25,10 +25,12 @@ const FABRIC: [Field<Fabric>; 12] = [
     ("Fabric::lift", |fabric, value| fabric.lift = value),
 ];
 
-const CLOTH: [Field<Cloth>; 5] = [
-    ("Cloth::substeps", |cloth, value| cloth.substeps = value as u32),
+const CLOTH: [Field<Cloth>; 7] = [
+    ("Cloth::max_strain", |cloth, value| cloth.max_strain = value),
+    ("Cloth::substeps", |cloth, value| cloth.substeps = Some(value as u32)),
     ("Cloth::max_substeps", |cloth, value| cloth.max_substeps = value as u32),
     ("Cloth::gravity_scale", |cloth, value| cloth.gravity_scale = value),
+    ("Cloth::max_velocity", |cloth, value| cloth.max_velocity = value),
     ("Cloth::tether_slack", |cloth, value| cloth.tether_slack = Some(value)),
     ("Cloth::fluid_density", |cloth, value| cloth.fluid_density = value),
 ];
@@ -82,10 +84,22 @@ fn cloths_are_checked_field_by_field() {
             }
             let may_be_negative = name == "Cloth::gravity_scale";
             assert_eq!(refused(-1.0).as_deref(), (!may_be_negative).then_some(name), "{name} of -1");
-            assert_eq!(refused(0.0), None, "{name} of 0");
+            let may_be_zero = !["Cloth::max_strain", "Cloth::max_velocity"].contains(&name);
+            assert_eq!(refused(0.0).as_deref(), (!may_be_zero).then_some(name), "{name} of 0");
         }
         assert_eq!(refused(1.0), None, "{name} of 1");
     }
+}
+
+#[test]
+fn levels_are_checked_and_what_the_mesh_has_not_is_left_out() {
+    let mut app = headless();
+    let level = |stride, iterations| Cloth { levels: Some(vec![LevelPass { stride, iterations }]), ..default() };
+    assert_eq!(refused_for(&mut app, level(4, 1001)).as_deref(), Some("Cloth::levels"));
+    for cloth in [level(4, 0), level(4, 1000), level(0, 8), level(7, 8), level(u32::MAX, 8)] {
+        assert_eq!(refused_for(&mut app, cloth.clone()), None, "{:?}", cloth.levels);
+    }
+    assert_eq!(refused_for(&mut app, Cloth { levels: Some(Vec::new()), ..default() }), None);
 }
 
 #[test]
@@ -105,9 +119,15 @@ fn extreme_values_stay_finite() {
             assert_eq!(refused_for(&mut app, (fabric, Pins::corners())), None, "{name} of {value}");
         }
     }
-    for gravity_scale in [1e10, -1e30, f32::MAX] {
-        let cloth = Cloth { gravity_scale, ..default() };
-        assert_eq!(refused_for(&mut app, cloth), None, "gravity scale of {gravity_scale}");
+    for solver in [ClothSolver::Strands, ClothSolver::Xpbd] {
+        for gravity_scale in [1e10, -1e30, f32::MAX] {
+            let cloth = Cloth { solver, gravity_scale, ..default() };
+            assert_eq!(refused_for(&mut app, cloth), None, "gravity scale of {gravity_scale}");
+        }
+        for value in [1e-30, 1e30, f32::MAX] {
+            let cloth = Cloth { solver, max_strain: value, max_velocity: value, ..default() };
+            assert_eq!(refused_for(&mut app, (cloth, Pins::corners())), None, "strain and speed of {value}");
+        }
     }
 }
 
@@ -125,7 +145,7 @@ fn a_value_that_turns_bad_is_ignored_and_the_cloth_goes_on() {
     let breaks: [fn(&mut App, Entity); 5] = [
         |app, cloth| get_mut::<Fabric>(app, cloth).density = 0.0,
         |app, cloth| get_mut::<Fabric>(app, cloth).structural_stiffness = f32::NAN,
-        |app, cloth| get_mut::<Cloth>(app, cloth).substeps = 0,
+        |app, cloth| get_mut::<Cloth>(app, cloth).substeps = Some(0),
         |app, cloth| get_mut::<Cloth>(app, cloth).gravity_scale = f32::INFINITY,
         |app, cloth| *get_mut::<Pins>(app, cloth) = Pins::indices([99]),
     ];

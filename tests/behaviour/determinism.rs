@@ -43,10 +43,15 @@ fn winds() -> Vec<Wind> {
 fn scene(plugin: ClothPlugin, spawn_others: impl FnOnce(&mut World)) -> u64 {
     let mut app = headless_with(plugin);
     spawn_others(app.world_mut());
-    let solver = |i| if i == 5 { ClothSolver::Explicit } else { ClothSolver::Xpbd };
+    let solver = |i| match i {
+        4 => ClothSolver::Xpbd,
+        5 => ClothSolver::Explicit,
+        _ => ClothSolver::Strands,
+    };
     let cloths: Vec<Entity> = (0..6)
         .map(|i| {
-            let grid = ClothGrid::new(1.0, 1.0, 8 + i, 8 + i).lying();
+            // The larger ones have coarse levels.
+            let grid = ClothGrid::new(1.0, 1.0, 8 + 3 * i, 8 + 3 * i).lying();
             let pins = if i % 2 == 0 { Pins::edge(ClothEdge::Left) } else { Pins::none() };
             let cloth = Cloth { solver: solver(i), max_substeps: 16, ..default() };
             spawn_cloth(&mut app, grid, (pins, cloth, Transform::from_xyz(0.0, 0.1 * i as f32, 0.0)))

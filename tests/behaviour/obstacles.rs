@@ -7,7 +7,7 @@ use crate::common::*;
 
 /// A weightless sheet that lies at height 0.
 fn floating(app: &mut App) -> Entity {
-    let cloth = Cloth { gravity_scale: 0.0, substeps: 16, ..default() };
+    let cloth = Cloth { gravity_scale: 0.0, substeps: Some(16), ..default() };
     spawn_cloth(app, ClothGrid::new(1.0, 1.0, 17, 17).lying(), (cloth, undamped()))
 }
 

@@ -40,7 +40,7 @@ fn a_game_can_choose() {
 fn an_edit_of_all_writes_one_value_to_each() {
     let mut app = app();
     let silk = spawn_cloth(&mut app, "Silk", Fabric::SILK);
-    let denim = spawn_cloth(&mut app, "Denim", (Fabric::DENIM, Cloth { substeps: 20, ..default() }));
+    let denim = spawn_cloth(&mut app, "Denim", (Fabric::DENIM, Cloth { substeps: Some(20), ..default() }));
     let mut desk = Desk::new(app);
     desk.choose(Role::ComboBox, "Cloth", "All 2 cloths");
     desk.type_value("Lift", "0.9");
@@ -48,7 +48,7 @@ fn an_edit_of_all_writes_one_value_to_each() {
     assert_eq!(desk.get::<Fabric>(silk), &Fabric { lift: 0.9, ..Fabric::SILK });
     assert_eq!(desk.get::<Fabric>(denim), &Fabric { lift: 0.9, ..Fabric::DENIM });
     assert_eq!(desk.get::<Cloth>(silk), &Cloth { gravity_scale: 2.0, ..default() });
-    assert_eq!(desk.get::<Cloth>(denim), &Cloth { gravity_scale: 2.0, substeps: 20, ..default() });
+    assert_eq!(desk.get::<Cloth>(denim), &Cloth { gravity_scale: 2.0, substeps: Some(20), ..default() });
     desk.choose(Role::ComboBox, "Preset", "rubber");
     assert_eq!((desk.get::<Fabric>(silk), desk.get::<Fabric>(denim)), (&Fabric::RUBBER, &Fabric::RUBBER));
 }

@@ -1,7 +1,7 @@
 //! What is put on the clipboard.
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
+use bevy_drape::{prelude::*, solver::LevelPass};
 use bevy_egui::egui::accesskit::Role;
 
 use crate::common::*;
@@ -31,15 +31,37 @@ fn the_edited_cloth_is_copied_as_rust() {
     spawn_cloth(&mut app, "Curtain", ());
     let mut desk = Desk::new(app);
     assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some("Cloth::default(),\nFabric::default(),\n"));
+    desk.click(Role::CheckBox, "Substeps by hand");
     desk.type_value("Substeps", "12");
     desk.type_value("Density", "0.15");
     desk.type_value("Bend", "5");
     let expected =
-        "Cloth { substeps: 12, ..default() },\nFabric { density: 0.15, bend_stiffness: 5.0, ..default() },\n";
+        "Cloth { substeps: Some(12), ..default() },\nFabric { density: 0.15, bend_stiffness: 5.0, ..default() },\n";
     assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some(expected));
     // What was copied, as code.
     let _: (Cloth, Fabric) =
-        (Cloth { substeps: 12, ..default() }, Fabric { density: 0.15, bend_stiffness: 5.0, ..default() });
+        (Cloth { substeps: Some(12), ..default() }, Fabric { density: 0.15, bend_stiffness: 5.0, ..default() });
+}
+
+#[test]
+fn levels_are_copied_as_rust() {
+    let mut app = app();
+    let own = Cloth { levels: Some(vec![LevelPass { stride: 4, iterations: 6 }]), ..default() };
+    spawn_cloth(&mut app, "Auto", ());
+    spawn_cloth(&mut app, "Own", own);
+    let mut desk = Desk::new(app);
+    desk.click(Role::CheckBox, "Coarse levels");
+    let expected = "Cloth { levels: Some(vec![]), ..default() },\nFabric::default(),\n";
+    assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some(expected));
+    desk.choose(Role::ComboBox, "Cloth", "Own");
+    let expected =
+        "Cloth { levels: Some(vec![LevelPass { stride: 4, iterations: 6 }]), ..default() },\nFabric::default(),\n";
+    assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some(expected));
+    // What was copied, as code.
+    let _: [Cloth; 2] = [
+        Cloth { levels: Some(vec![]), ..default() },
+        Cloth { levels: Some(vec![LevelPass { stride: 4, iterations: 6 }]), ..default() },
+    ];
 }
 
 #[test]

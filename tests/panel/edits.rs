@@ -1,7 +1,7 @@
 //! Edits change what was edited, in the next step, and nothing else.
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
+use bevy_drape::{prelude::*, solver::LevelPass};
 use bevy_egui::egui::accesskit::Role;
 
 use crate::common::*;
@@ -25,6 +25,7 @@ fn every_value_can_be_typed() {
     let cloth = spawn_cloth(&mut app, "Curtain", ());
     app.world_mut().spawn(Wind::default());
     let mut desk = Desk::new(app);
+    desk.click(Role::CheckBox, "Substeps by hand");
     for (name, text) in [
         ("Stretch", "1200 N/m"),
         ("Shear", "120"),
@@ -38,8 +39,10 @@ fn every_value_can_be_typed() {
         ("Drag", "1"),
         ("Lift", "0.1"),
         ("Damping", "0.5"),
+        ("Most stretch", "0.03"),
         ("Substeps", "17"),
         ("Tether slack", "0.02"),
+        ("Largest speed", "30 m/s"),
         ("Gravity scale", "-0.5"),
         ("Air density", "1.5"),
     ] {
@@ -60,8 +63,15 @@ fn every_value_can_be_typed() {
         lift: 0.1,
     };
     assert_eq!(desk.get::<Fabric>(cloth), &fabric);
-    let settings =
-        Cloth { substeps: 17, tether_slack: Some(0.02), gravity_scale: -0.5, fluid_density: 1.5, ..default() };
+    let settings = Cloth {
+        max_strain: 0.03,
+        substeps: Some(17),
+        tether_slack: Some(0.02),
+        max_velocity: 30.0,
+        gravity_scale: -0.5,
+        fluid_density: 1.5,
+        ..default()
+    };
     assert_eq!(desk.get::<Cloth>(cloth), &settings);
     for (axis, text) in ["1", "-1.62", "0.5"].into_iter().enumerate() {
         desk.type_nth_value("Gravity, m/s²", axis, text);
@@ -78,11 +88,35 @@ fn the_solver_and_its_own_settings_can_be_chosen() {
     assert_eq!(desk.get::<Cloth>(cloth).tether_slack, None);
     desk.click(Role::CheckBox, "Tethers");
     assert_eq!(desk.get::<Cloth>(cloth).tether_slack, Cloth::default().tether_slack);
+    desk.click(Role::CheckBox, "Substeps by hand");
+    let by_hand = desk.get::<Cloth>(cloth).substeps;
+    assert!(by_hand.is_some_and(|substeps| substeps > 0));
+    desk.choose(Role::ComboBox, "Solver", "XPBD");
+    assert_eq!(desk.get::<Cloth>(cloth), &Cloth { solver: ClothSolver::Xpbd, substeps: by_hand, ..default() });
+    assert!(desk.controls(Role::CheckBox, "Coarse levels").next().is_none(), "it has no levels");
+    desk.click(Role::CheckBox, "Substeps by hand");
+    assert_eq!(desk.get::<Cloth>(cloth).substeps, None);
+    assert!(desk.controls(Role::Slider, "Substeps").next().is_none(), "they are chosen");
     desk.choose(Role::ComboBox, "Solver", "Explicit");
     assert_eq!(desk.get::<Cloth>(cloth).solver, ClothSolver::Explicit);
     desk.type_value("Most substeps", "700");
     assert_eq!(desk.get::<Cloth>(cloth), &Cloth { solver: ClothSolver::Explicit, max_substeps: 700, ..default() });
     assert!(desk.controls(Role::Slider, "Tether slack").next().is_none(), "it has no tethers");
+}
+
+#[test]
+fn coarse_levels_go_and_come() {
+    let mut app = app();
+    let own = Cloth { levels: Some(vec![LevelPass { stride: 4, iterations: 6 }]), ..default() };
+    let (auto, own) = (spawn_cloth(&mut app, "Auto", ()), spawn_cloth(&mut app, "Own", own));
+    let mut desk = Desk::new(app);
+    for (cloth, name) in [(auto, "Auto"), (own, "Own")] {
+        desk.choose(Role::ComboBox, "Cloth", name);
+        desk.click(Role::CheckBox, "Coarse levels");
+        assert_eq!(desk.get::<Cloth>(cloth), &Cloth { levels: Some(Vec::new()), ..default() }, "{name}");
+        desk.click(Role::CheckBox, "Coarse levels");
+        assert_eq!(desk.get::<Cloth>(cloth), &Cloth::default(), "{name}");
+    }
 }
 
 #[test]
@@ -137,15 +171,13 @@ fn an_edit_acts_in_the_next_step_and_the_cloth_moves_on() {
     desk.type_value("Gravity scale", "0");
     desk.type_value("Density", "1");
     desk.choose(Role::ComboBox, "Preset", "wool");
+    desk.click(Role::CheckBox, "Substeps by hand");
     desk.slide("Substeps", 0.5);
     let state = desk.get::<ClothState>(cloth);
     let speed = state.velocity(9).expect("a particle").y;
     assert!(speed < -1.0, "it goes on as it went: {speed}");
     assert!(fallen(&desk) < before);
-    assert_eq!(
-        desk.get::<ClothState>(cloth).report().map(|report| report.substeps),
-        Some(desk.get::<Cloth>(cloth).substeps)
-    );
+    assert_eq!(desk.get::<ClothState>(cloth).report().map(|report| report.substeps), desk.get::<Cloth>(cloth).substeps);
     desk.frames(10);
     let later = desk.get::<ClothState>(cloth).velocity(9).expect("a particle").y;
     assert!((later - speed).abs() < 0.3, "nothing accelerates it: {speed} to {later}");

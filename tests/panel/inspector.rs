@@ -49,7 +49,11 @@ fn assert_shown(components: impl Bundle, component: &str, fields: &[&str]) {
 
 #[test]
 fn every_component_shows_its_fields() {
-    assert_shown(Cloth::default(), "Cloth", &["solver", "substeps", "tether_slack", "fluid_density"]);
+    assert_shown(
+        Cloth::default(),
+        "Cloth",
+        &["solver", "max_strain", "substeps", "levels", "tether_slack", "max_velocity", "fluid_density"],
+    );
     assert_shown(Fabric::default(), "Fabric", &["density", "structural_stiffness", "lift"]);
     assert_shown(Pins::edge(ClothEdge::Top), "Pins", &["groups"]);
     assert_shown(Wind::default(), "Wind", &["velocity", "region", "gusts", "eddy_size"]);
@@ -60,7 +64,7 @@ fn every_component_shows_its_fields() {
 
 #[test]
 fn an_edit_there_reaches_the_component() {
-    let mut inspector = inspect(Cloth::default());
+    let mut inspector = inspect(Cloth { substeps: Some(8), ..default() });
     open(&mut inspector, "Cloth");
     let substeps = inspector.root().children_recursive().find(|node| {
         let node = node.accesskit_node();
@@ -72,5 +76,5 @@ fn an_edit_there_reaches_the_component() {
     inspector.key_press(egui::Key::Enter);
     inspector.run();
     let (app, entity) = inspector.state();
-    assert_eq!(app.world().get::<Cloth>(*entity), Some(&Cloth { substeps: 24, ..default() }));
+    assert_eq!(app.world().get::<Cloth>(*entity), Some(&Cloth { substeps: Some(24), ..default() }));
 }

@@ -13,8 +13,8 @@ fn hang(app: &mut App, cloth: Cloth, pins: Pins, stiffness: f32) -> Entity {
     app.world_mut().spawn((Mesh3d(mesh), cloth, fabric, pins, Name::new("Sheet"))).id()
 }
 
-fn untethered(substeps: u32) -> Cloth {
-    Cloth { substeps, tether_slack: None, ..default() }
+fn untethered(solver: ClothSolver, substeps: u32) -> Cloth {
+    Cloth { solver, substeps: Some(substeps), tether_slack: None, ..default() }
 }
 
 /// What the panel warns of once a sheet has hung for a while.
@@ -32,18 +32,33 @@ fn shown(desk: &Desk) -> Option<String> {
     texts.filter(|text| text.contains('⚠')).max_by_key(String::len)
 }
 
+const XPBD: ClothSolver = ClothSolver::Xpbd;
+const STRANDS: ClothSolver = ClothSolver::Strands;
+
 #[test]
 fn too_few_substeps_are_told() {
-    let text = warning(untethered(2), Pins::edge(ClothEdge::Top), 5000.0).expect("a warning");
+    let text = warning(untethered(XPBD, 2), Pins::edge(ClothEdge::Top), 5000.0).expect("a warning");
     assert!(text.contains("2 substeps are too few for 5000 N/m") && text.contains("tethers"), "{text}");
-    assert!(warning(untethered(4), Pins::edge_corners(ClothEdge::Top), 1e6).is_some());
+    assert!(warning(untethered(XPBD, 4), Pins::edge_corners(ClothEdge::Top), 1e6).is_some());
+}
+
+#[test]
+fn too_few_substeps_of_strands_without_levels_are_told_too() {
+    let cloth = Cloth { levels: Some(Vec::new()), ..untethered(STRANDS, 1) };
+    let text = warning(cloth, Pins::edge_corners(ClothEdge::Top), 5000.0).expect("a warning");
+    assert!(text.contains("1 substep is too few for 5000 N/m") && text.contains("tethers"), "{text}");
 }
 
 #[test]
 fn what_is_solved_well_is_left_in_peace() {
-    assert_eq!(warning(untethered(32), Pins::edge(ClothEdge::Top), 5000.0), None);
-    assert_eq!(warning(Cloth::default(), Pins::edge(ClothEdge::Top), 5000.0), None, "tethers hold it");
-    assert_eq!(warning(untethered(64), Pins::edge_corners(ClothEdge::Top), 150.0), None, "it is soft");
+    assert_eq!(warning(Cloth::default(), Pins::edge_corners(ClothEdge::Top), 5000.0), None, "the default holds it");
+    for solver in [XPBD, STRANDS] {
+        let tethered = Cloth { solver, ..default() };
+        assert_eq!(warning(untethered(solver, 32), Pins::edge(ClothEdge::Top), 5000.0), None);
+        assert_eq!(warning(tethered, Pins::edge(ClothEdge::Top), 5000.0), None, "tethers hold it");
+        let soft = untethered(solver, 64);
+        assert_eq!(warning(soft, Pins::edge_corners(ClothEdge::Top), 150.0), None, "it is soft");
+    }
 }
 
 #[test]
@@ -51,7 +66,7 @@ fn a_cloth_whose_pins_are_pulled_apart_is_left_in_peace() {
     let mut app = app();
     let [left, right] = [-0.6, 0.6].map(|x| app.world_mut().spawn(Transform::from_xyz(x, 0.6, 0.0)).id());
     let pins = Pins::indices([0]).to_entity(left).and(Pins::indices([23]).to_entity(right));
-    hang(&mut app, untethered(8), pins, 5000.0);
+    hang(&mut app, untethered(XPBD, 8), pins, 5000.0);
     app.update();
     app.update();
     app.world_mut().get_mut::<Transform>(right).expect("a transform").translation.x = 0.9;

@@ -8,12 +8,18 @@ use bevy_drape::{
     build,
     prelude::{ClothGrid, Fabric},
     solver::{
-        Anchor, Grab, Material, Method, Obstacle, Particles, Scratch, StepContext, StepReport, Tether, Topology,
-        WindSource, step,
+        Anchor, Effort, Grab, Material, Method, Obstacle, Particles, Scratch, StepContext, StepReport, Tethers,
+        Topology, WindSource, step,
     },
 };
 
 pub const GRAVITY: f32 = 9.81;
+
+/// Every way to integrate the springs.
+pub const ALL: [Method; 3] = [Method::Strands, Method::Xpbd, Method::Explicit];
+
+/// Those that are stable whatever the stiffness and the time step: the default and the one before it.
+pub const STABLE: [Method; 2] = [Method::Strands, Method::Xpbd];
 
 /// A cloth and all that acts on it.
 #[derive(Clone)]
@@ -23,12 +29,13 @@ pub struct Bed {
     pub material: Material,
     pub anchors: Vec<Anchor>,
     pub grabs: Vec<Grab>,
-    pub tethers: Vec<Tether>,
+    pub tethers: Option<Tethers>,
     pub obstacles: Vec<Obstacle>,
     pub winds: Vec<WindSource>,
     pub method: Method,
-    pub substeps: u32,
+    pub effort: Effort,
     pub max_substeps: u32,
+    pub max_velocity: f32,
     pub gravity: Vec3A,
     pub fluid_density: f32,
     pub scratch: Scratch,
@@ -51,12 +58,13 @@ impl Bed {
             material,
             anchors: Vec::new(),
             grabs: Vec::new(),
-            tethers: Vec::new(),
+            tethers: None,
             obstacles: Vec::new(),
             winds: Vec::new(),
-            method: Method::Xpbd,
-            substeps: 8,
+            method: Method::Strands,
+            effort: Effort::fixed(8, Vec::new()),
             max_substeps: 4096,
+            max_velocity: 100.0,
             gravity: Vec3A::NEG_Y * GRAVITY,
             fluid_density: 1.225,
             scratch: Scratch::default(),
@@ -78,19 +86,48 @@ impl Bed {
         self
     }
 
+    /// Ties all particles to `pins`.
+    pub fn tethered(mut self, pins: &[u32]) -> Self {
+        self.tethers = Some(build::tethers(&self.topology, pins));
+        self
+    }
+
+    /// A method with the effort that a game makes where it says nothing of it.
+    pub fn as_in_a_game(mut self, method: Method) -> Self {
+        self.method = method;
+        self.effort = match method {
+            Method::Strands => Effort::to_hold(0.005, &self.topology),
+            Method::Xpbd | Method::Explicit => Effort::fixed(8, Vec::new()),
+        };
+        self
+    }
+
+    /// All levels that may go with one substep, whatever the substeps. Only strands have any.
+    pub fn with_levels(mut self) -> Self {
+        self.effort = Effort::fixed(self.effort.substeps, Effort::levels_for(1, &self.topology));
+        self
+    }
+
+    /// So many substeps, without levels.
+    pub fn with_substeps(mut self, substeps: u32) -> Self {
+        self.effort = Effort::fixed(substeps, Vec::new());
+        self
+    }
+
     /// One step of `dt` seconds.
     pub fn step(&mut self, dt: f32) -> StepReport {
         self.winds.iter_mut().for_each(|wind| wind.advance(dt));
         let ctx = StepContext {
             dt,
             method: self.method,
-            substeps: self.substeps,
+            effort: &self.effort,
             max_substeps: self.max_substeps,
             material: self.material,
             gravity: self.gravity,
             anchors: &self.anchors,
             grabs: &self.grabs,
-            tethers: &self.tethers,
+            max_velocity: self.max_velocity,
+            tethers: self.tethers.as_ref(),
             tether_slack: 0.0,
             obstacles: &self.obstacles,
             fluid_density: self.fluid_density,

@@ -1,9 +1,12 @@
-//! Two solvers, one set of constants: both come to the same motion as their steps shrink.
+//! Three solvers, one set of constants: all come to the same motion as their steps shrink.
 
 use bevy::math::ops;
-use bevy_drape::{prelude::Fabric, solver::Method};
+use bevy_drape::{
+    prelude::Fabric,
+    solver::{Effort, LevelPass, Method, Topology},
+};
 
-use crate::bench_bed::{Bed, bare, rms};
+use crate::bench_bed::{Bed, STABLE, bare, rms};
 
 /// The standard cloth, rippled and held by two corners.
 fn held(method: Method) -> Bed {
@@ -16,27 +19,52 @@ fn held(method: Method) -> Bed {
     bed
 }
 
-/// The same 0.5 s after it was let go.
-fn swung(method: Method, refine: u32) -> Bed {
-    let mut bed = Bed { substeps: 8 * refine, ..held(method) };
+/// 0.5 s after it was let go, with so many substeps and levels.
+fn swung(method: Method, effort: Effort) -> Bed {
+    let mut bed = Bed { effort, ..held(method) };
     bed.run(0.5);
     bed
 }
 
+/// Distances from the explicit solver's motion with so many substeps, m.
+fn errors<const N: usize>(
+    method: Method,
+    substeps: [u32; N],
+    levels: fn(u32, &Topology) -> Vec<LevelPass>,
+) -> [f32; N] {
+    let truth = swung(Method::Explicit, Effort::fixed(1, Vec::new()));
+    let errors = substeps.map(|substeps| {
+        let effort = Effort::fixed(substeps, levels(substeps, &truth.topology));
+        rms(&swung(method, effort).particles, &truth.particles)
+    });
+    println!("{method:?} at 0.5 s with {substeps:?} substeps: RMS {errors:?} m");
+    errors
+}
+
+fn none(_: u32, _: &Topology) -> Vec<LevelPass> {
+    Vec::new()
+}
+
 #[test]
-fn xpbd_comes_to_the_motion_of_the_explicit_solver_as_its_steps_shrink() {
-    let truth = swung(Method::Explicit, 1);
-    // Finer steps than the last gain nothing in f32: what they move by is lost in rounding.
-    let errors = [1, 4, 16].map(|refine| rms(&swung(Method::Xpbd, refine).particles, &truth.particles));
-    println!("RMS at 0.5 s with 8, 32, 128 substeps: {errors:?} m");
-    assert!(errors.array_windows().all(|[coarse, fine]| *coarse > 3.0 * fine), "{errors:?}");
-    assert!(errors[2] < 0.006, "{errors:?}");
+fn xpbd_and_strands_come_to_the_motion_of_the_explicit_solver_as_their_steps_shrink() {
+    for method in STABLE {
+        // Finer steps than the last gain nothing in f32: what they move by is lost in rounding.
+        let errors = errors(method, [8, 32, 128], none);
+        assert!(errors.array_windows().all(|[coarse, fine]| *coarse > 3.0 * fine), "{method:?}: {errors:?}");
+        assert!(errors[2] < 0.006, "{method:?}: {errors:?}");
+    }
+}
+
+#[test]
+fn with_the_levels_that_go_with_their_substeps_strands_come_closer_with_each_more() {
+    let errors = errors(Method::Strands, [1, 2, 4, 8, 16, 32], Effort::levels_for);
+    assert!(errors.array_windows().all(|[coarse, fine]| coarse > fine), "{errors:?}");
 }
 
 #[test]
 fn the_explicit_solver_is_its_own_limit() {
-    // Half of its own step: the answer moves by less than what XPBD is measured against.
-    let coarse = swung(Method::Explicit, 1);
+    // Half of its own step: the answer moves by less than what the others are measured against.
+    let coarse = swung(Method::Explicit, Effort::fixed(1, Vec::new()));
     let own_substeps = held(Method::Explicit).step(1.0 / 60.0).substeps;
     let steps = 2 * own_substeps;
     let mut fine = held(Method::Explicit);

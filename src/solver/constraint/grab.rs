@@ -24,7 +24,11 @@ use std::sync::Arc;
 use bevy::math::Vec3A;
 
 use super::tether;
-use crate::solver::Particles;
+use crate::solver::{
+    Lanes,
+    lanes::{Order, Points},
+    simd::LANES,
+};
 
 /// A hand on its way over one step.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,79 +64,73 @@ pub struct GrabTether {
 
 impl Grab {
     /// The grabbed point, for the values `of` all particles.
-    fn point(&self, of: &[Vec3A]) -> Vec3A {
-        let [a, b, c] = self.particles.map(|i| of[i as usize]);
+    fn point(&self, order: Order, of: &Points) -> Vec3A {
+        let [a, b, c] = self.particles.map(|i| of.get(order.slot(i)));
         a * self.weights[0] + b * self.weights[1] + c * self.weights[2]
     }
 
     /// Inverse mass of the grabbed point, 1/kg: the sum of bi² wi.
-    fn inverse_mass(&self, particles: &Particles) -> f32 {
-        let share = |i: usize| self.weights[i] * self.weights[i] * particles.inverse_mass[self.particles[i] as usize];
+    fn inverse_mass(&self, lanes: &Lanes) -> f32 {
+        let share =
+            |i: usize| self.weights[i] * self.weights[i] * lanes.inverse_mass(lanes.order.slot(self.particles[i]));
         share(0) + share(1) + share(2)
     }
 
     /// Changes the point's position or velocity by `change`: its particles' by bi wi / w of it.
-    fn push(&self, particles: &mut Particles, change: Vec3A, of: impl Fn(&mut Particles) -> &mut [Vec3A]) {
-        let w = self.inverse_mass(particles);
+    fn push(&self, lanes: &mut Lanes, change: Vec3A, of: impl Fn(&mut Lanes) -> &mut Points) {
+        let w = self.inverse_mass(lanes);
         for (&particle, weight) in self.particles.iter().zip(self.weights) {
-            let share = weight * particles.inverse_mass[particle as usize];
+            let slot = lanes.order.slot(particle);
+            let share = weight * lanes.inverse_mass(slot);
             // None of it where all are fixed.
             if share > 0.0 {
-                of(particles)[particle as usize] += change * (share / w);
+                let values = of(lanes);
+                values.set(slot, values.get(slot) + change * (share / w));
             }
         }
     }
 }
 
-/// Adds the hands' masses to the particles that they hold, and keeps the `own` inverse masses of those.
-pub fn take_up(particles: &mut Particles, grabs: &[Grab], own: &mut Vec<(u32, f32)>) {
-    own.clear();
+/// Adds the hands' masses to the particles that they hold, for the rest of the step.
+pub(in crate::solver) fn take_up(lanes: &mut Lanes, grabs: &[Grab]) {
     for grab in grabs {
         for (&particle, weight) in grab.particles.iter().zip(grab.weights) {
-            let w = &mut particles.inverse_mass[particle as usize];
-            own.push((particle, *w));
+            let slot = lanes.order.slot(particle);
+            let w = &mut lanes.inverse_mass[slot / LANES][slot % LANES];
             *w /= 1.0 + *w * grab.mass * weight;
         }
     }
 }
 
-/// Gives the held particles their `own` inverse masses back.
-pub fn put_down(particles: &mut Particles, own: &[(u32, f32)]) {
-    // Backwards: the first entry of a particle that two hands hold is the one without either.
-    for &(particle, w) in own.iter().rev() {
-        particles.inverse_mass[particle as usize] = w;
-    }
-}
-
 /// Gives every grabbed point the speed of its target in the part `span` (0..=1) of the step, a substep of `h` seconds.
-pub fn carry(particles: &mut Particles, grabs: &[Grab], span: Range<f32>, h: f32) {
+pub(in crate::solver) fn carry(lanes: &mut Lanes, grabs: &[Grab], span: Range<f32>, h: f32) {
     for grab in grabs {
         let speed = (grab.end - grab.start) * ((span.end - span.start) / h);
-        let lacking = speed - grab.point(&particles.velocity);
-        grab.push(particles, lacking, |particles| &mut particles.velocity);
+        let lacking = speed - grab.point(lanes.order, &lanes.velocity);
+        grab.push(lanes, lacking, |lanes| &mut lanes.velocity);
     }
 }
 
 /// Pulls every grabbed point towards its target within the part `span` (0..=1) of the step, a substep of `h` seconds.
-pub fn solve(particles: &mut Particles, grabs: &[Grab], span: Range<f32>, h: f32) {
+pub(in crate::solver) fn solve(lanes: &mut Lanes, grabs: &[Grab], span: Range<f32>, h: f32) {
     for grab in grabs {
         let (before, target) = (grab.start.lerp(grab.end, span.start), grab.start.lerp(grab.end, span.end));
-        let w = grab.inverse_mass(particles);
-        let (now, previous) = (grab.point(&particles.position), grab.point(&particles.previous));
+        let w = grab.inverse_mass(lanes);
+        let (now, previous) = (grab.point(lanes.order, &lanes.position), grab.point(lanes.order, &lanes.previous));
         let drift = (now - previous) - (target - before);
         let (k, c) = (grab.stiffness * h * h, grab.damping * h);
         let lambda = ((target - now) * k - drift * c) / ((k + c) * w + 1.0);
         let lambda = lambda.clamp_length_max(grab.max_force * h * h);
-        grab.push(particles, lambda * w, |particles| &mut particles.position);
+        grab.push(lanes, lambda * w, |lanes| &mut lanes.position);
     }
 }
 
 /// Pulls the particles that are too far from a grabbed point back to the end of their tethers.
-pub fn solve_tethers(particles: &mut Particles, grabs: &[Grab], slack: f32) {
+pub(in crate::solver) fn solve_tethers(lanes: &mut Lanes, grabs: &[Grab], slack: f32) {
     for grab in grabs {
-        let point = grab.point(&particles.position);
+        let point = grab.point(lanes.order, &lanes.position);
         for &GrabTether { particle, length } in &*grab.tethers {
-            tether::pull_back(particles, particle as usize, point, length * (1.0 + slack));
+            tether::pull_back(lanes, particle, point, length * (1.0 + slack));
         }
     }
 }
@@ -140,16 +138,19 @@ pub fn solve_tethers(particles: &mut Particles, grabs: &[Grab], slack: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::{Instructions, Particles};
 
-    fn triangle() -> Particles {
-        let position = vec![Vec3A::ZERO, Vec3A::X, Vec3A::Y];
-        Particles {
-            previous: position.clone(),
+    fn triangle() -> Lanes {
+        let particles = Particles {
+            position: vec![Vec3A::ZERO, Vec3A::X, Vec3A::Y],
             velocity: vec![Vec3A::ZERO; 3],
             inverse_mass: vec![2.0; 3],
             force: vec![Vec3A::ZERO; 3],
-            position,
-        }
+        };
+        let mut lanes = Lanes::default();
+        lanes.load(&particles, Order::plain(3), Instructions::Best);
+        lanes.previous = lanes.position.clone();
+        lanes
     }
 
     /// Pulls the middle of the triangle 0.5 m along Z.
@@ -170,46 +171,43 @@ mod tests {
 
     #[test]
     fn a_grabbed_point_moves_by_the_implicit_euler_answer() {
-        let mut particles = triangle();
-        solve(&mut particles, &[grab()], 0.0..1.0, 0.1);
+        let mut lanes = triangle();
+        solve(&mut lanes, &[grab()], 0.0..1.0, 0.1);
         // Three particles of 0.5 kg as one: m Δz = h² (k (s - Δz) - c Δz / h), with s = 0.5 m.
         let expected = 100.0 * 0.01 * 0.5 / (1.5 + 100.0 * 0.01 + 3.0 * 0.1);
-        for position in &particles.position {
-            assert!((position.z - expected).abs() < 1e-6, "{position}");
+        for z in &lanes.position.0[0][2][..3] {
+            assert!((z - expected).abs() < 1e-6, "{z}");
         }
     }
 
     #[test]
     fn the_force_of_a_grab_is_bounded() {
-        let mut particles = triangle();
-        solve(&mut particles, &[Grab { max_force: 6.0, ..grab() }], 0.0..1.0, 0.1);
-        assert!((particles.position[0].z - 6.0 / 1.5 * 0.01).abs() < 1e-6);
+        let mut lanes = triangle();
+        solve(&mut lanes, &[Grab { max_force: 6.0, ..grab() }], 0.0..1.0, 0.1);
+        assert!((lanes.position.get(0).z - 6.0 / 1.5 * 0.01).abs() < 1e-6);
     }
 
     #[test]
-    fn a_held_point_has_the_mass_of_its_hands_and_gets_its_own_back() {
-        let mut particles = triangle();
+    fn a_held_point_has_the_mass_of_its_hands() {
+        let mut lanes = triangle();
         let hands = [Grab { mass: 3.0, ..grab() }, Grab { mass: 6.0, weights: [1.0, 0.0, 0.0], ..grab() }];
-        let mut own = Vec::new();
-        take_up(&mut particles, &hands, &mut own);
+        take_up(&mut lanes, &hands);
         let masses = [7.5, 1.5, 1.5];
-        for (w, mass) in particles.inverse_mass.iter().zip(masses) {
+        for (w, mass) in lanes.inverse_mass[0].iter().zip(masses) {
             assert!((w * mass - 1.0).abs() < 1e-6, "{w}");
         }
-        put_down(&mut particles, &own);
-        assert_eq!(particles, triangle());
     }
 
     #[test]
     fn a_fixed_particle_is_not_pulled() {
-        let mut particles = triangle();
-        particles.inverse_mass = vec![0.0, 2.0, 2.0];
-        solve(&mut particles, &[grab()], 0.0..1.0, 0.1);
-        assert_eq!(particles.position[0], Vec3A::ZERO);
-        assert!(particles.position[1].z > 0.0);
-        particles.inverse_mass = vec![0.0; 3];
-        let before = particles.clone();
-        solve(&mut particles, &[grab()], 0.0..1.0, 0.1);
-        assert_eq!(particles, before);
+        let mut lanes = triangle();
+        lanes.inverse_mass[0][0] = 0.0;
+        solve(&mut lanes, &[grab()], 0.0..1.0, 0.1);
+        assert_eq!(lanes.position.get(0), Vec3A::ZERO);
+        assert!(lanes.position.get(1).z > 0.0);
+        lanes.inverse_mass[0].fill(0.0);
+        let before = lanes.position.clone();
+        solve(&mut lanes, &[grab()], 0.0..1.0, 0.1);
+        assert_eq!(lanes.position, before);
     }
 }

@@ -1,111 +1,227 @@
 //! Damped springs as compliant distance constraints.
 //!
 //! ```text
-//!   a ----- L0 ----- b        C = |xa - xb| - L0
+//!   a ----- L0 ----- b        C = |xb - xa| - L0
 //! ```
 //!
 //! The implicit form of Hooke's spring with damping: Macklin, Müller and Chentanez, "XPBD: Position-Based Simulation
 //! of Compliant Constrained Dynamics" (2016), equations 18 and 26, for one iteration a substep. Multiplied by
 //! k h², so that neither a stiffness of zero nor an infinite compliance needs a special case:
 //!
-//! lambda = -(k h² C + c h n·(Δxa - Δxb)) / ((k h² + c h) (wa + wb) + 1)
+//! lambda = -(k h² C + c h n·(Δxb - Δxa)) / ((k h² + c h) (wa + wb) + 1)
 //!
-//! with n the direction from b to a and Δx the way of a particle within the substep.
+//! with n the direction from a to b and Δx the way of a particle within the substep.
 
 use bevy::math::Vec3A;
+use fearless_simd::{dispatch, f32x8, prelude::*};
 
-use crate::solver::{Material, Particles, Spring, SpringConstants, Topology};
+use crate::solver::{
+    Lanes, Material, Spring, SpringBatch, SpringConstants, Topology,
+    lanes::{apart, together},
+    simd::{Instructions, LANES, SHORTEST, Vec3x8, lane},
+};
 
-/// Below this length (m) a spring has no direction and rests.
-const SHORTEST: f32 = 1e-9;
+/// k h² and c h of springs in a substep of h seconds, kg.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Scaled {
+    pub k: f32,
+    pub c: f32,
+}
 
-/// Works out, once a step, how much of each spring's push its two ends take: their inverse mass over the denominator
-/// above, which changes neither from substep to substep nor with the positions.
-pub(in crate::solver) fn weigh(
-    particles: &Particles,
-    topology: &Topology,
-    material: &Material,
-    h: f32,
-    shares: &mut [[f32; 2]],
-) {
-    for batch in &topology.batches {
-        let (k, c) = scaled(material.spring(batch.kind), h);
-        let range = batch.range.clone();
-        for (share, spring) in shares[range.clone()].iter_mut().zip(&topology.springs[range]) {
-            let w = [spring.a, spring.b].map(|i| particles.inverse_mass[i as usize]);
-            *share = w.map(|wi| wi / ((k + c) * (w[0] + w[1]) + 1.0));
+impl Scaled {
+    pub fn new(constants: SpringConstants, h: f32) -> Self {
+        Self { k: constants.stiffness * h * h, c: constants.damping * h }
+    }
+
+    /// Whether such springs do anything.
+    pub fn acts(&self) -> bool {
+        self.k + self.c > 0.0
+    }
+}
+
+/// One end of eight springs.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct End<S: Simd> {
+    pub position: Vec3x8<S>,
+    /// Position before the substep; read only where springs are damped.
+    pub previous: Vec3x8<S>,
+    pub inverse_mass: f32x8<S>,
+}
+
+/// Solves eight springs that share no particle, and returns where their ends are moved to. A spring with a rest length
+/// of zero isn't there.
+#[inline(always)]
+pub(in crate::solver) fn solve_eight<S: Simd, const DAMPED: bool>(
+    simd: S,
+    a: End<S>,
+    b: End<S>,
+    rest: f32x8<S>,
+    Scaled { k, c }: Scaled,
+) -> [Vec3x8<S>; 2] {
+    let along = b.position - a.position;
+    let squared = along.dot(along);
+    let length = squared.sqrt().max(f32x8::splat(simd, SHORTEST));
+    let mut push = (rest - length) * k;
+    if DAMPED {
+        // Along the spring: n·Δ = along·Δ / length.
+        push -= along.dot(along - (b.previous - a.previous)) * c / length;
+    }
+    let per_length = push / (length * ((a.inverse_mass + b.inverse_mass) * (k + c) + 1.0));
+    let none = f32x8::splat(simd, 0.0);
+    let per_length = rest.simd_gt(none).select(per_length, none);
+    [a.position - along * (per_length * a.inverse_mass), b.position + along * (per_length * b.inverse_mass)]
+}
+
+/// The particles one by one: what springs between any two of them read and write.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Beads {
+    /// Position, m, and inverse mass, 1/kg.
+    now: Vec<[f32; 4]>,
+    /// Position before the substep, m; only where springs are damped.
+    before: Vec<[f32; 4]>,
+}
+
+impl Beads {
+    #[inline(always)]
+    fn read<S: Simd, const DAMPED: bool>(&mut self, simd: S, lanes: &Lanes) {
+        // One more: missing ends of springs are there.
+        let count = lanes.order.particle_count() + 1;
+        self.now.resize(count, [0.0; 4]);
+        let blocks = lanes.order.blocks().zip(&lanes.position.0).zip(&lanes.inverse_mass);
+        for (((first, count), [x, y, z]), masses) in blocks {
+            let beads = together([lane(simd, x), lane(simd, y), lane(simd, z), lane(simd, masses)]);
+            self.now[first..first + count].copy_from_slice(&beads[..count]);
+        }
+        if DAMPED {
+            self.before.resize(count, [0.0; 4]);
+            for ((first, count), [x, y, z]) in lanes.order.blocks().zip(&lanes.previous.0) {
+                let z = lane(simd, z);
+                let beads = together([lane(simd, x), lane(simd, y), z, z]);
+                self.before[first..first + count].copy_from_slice(&beads[..count]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn write<S: Simd>(&self, simd: S, lanes: &mut Lanes) {
+        for ((first, count), block) in lanes.order.blocks().zip(&mut lanes.position.0) {
+            let mut beads = [[0.0; 4]; LANES];
+            beads[..count].copy_from_slice(&self.now[first..first + count]);
+            let [a, b, c, d, e, f, g, h] = &beads;
+            let [x, y, z, _] = apart(simd, [a, b, c, d, e, f, g, h]);
+            *block = [x.into(), y.into(), z.into()];
         }
     }
 }
 
-/// Solves all springs once, batch after batch, in a substep of `h` seconds with the shares that [`weigh`] gave.
-pub(in crate::solver) fn solve(
-    particles: &mut Particles,
-    topology: &Topology,
-    material: &Material,
-    h: f32,
-    shares: &[[f32; 2]],
-) {
-    for batch in &topology.batches {
-        let (springs, shares) = (&topology.springs[batch.range.clone()], &shares[batch.range.clone()]);
-        let (k, c) = scaled(material.spring(batch.kind), h);
-        if c > 0.0 {
-            solve_batch::<true>(particles, springs, shares, k, c);
-        } else if k > 0.0 {
-            solve_batch::<false>(particles, springs, shares, k, c);
+impl Beads {
+    /// One end of eight springs, at eight particles.
+    #[inline(always)]
+    fn end<S: Simd, const DAMPED: bool>(&self, simd: S, particles: &[u32; LANES]) -> End<S> {
+        let [x, y, z, inverse_mass] = gather(simd, &self.now, particles);
+        let position = Vec3x8 { x, y, z };
+        let previous = if DAMPED {
+            let [x, y, z, _] = gather(simd, &self.before, particles);
+            Vec3x8 { x, y, z }
+        } else {
+            position
+        };
+        End { position, previous, inverse_mass }
+    }
+
+    /// Moves eight particles.
+    #[inline(always)]
+    fn put<S: Simd>(&mut self, particles: &[u32; LANES], Vec3x8 { x, y, z }: Vec3x8<S>, inverse_mass: f32x8<S>) {
+        for (&i, bead) in particles.iter().zip(together([x, y, z, inverse_mass])) {
+            self.now[i as usize] = bead;
         }
-    }
-}
-
-/// k h² and c h.
-fn scaled(constants: SpringConstants, h: f32) -> (f32, f32) {
-    (constants.stiffness * h * h, constants.damping * h)
-}
-
-/// Springs whose roots and divisions are taken side by side. Those of one batch share no particle, so the answer is the
-/// same as one after the other. The wait for a root is shared, which makes the whole step a tenth faster.
-const ABREAST: usize = 4;
-
-fn solve_batch<const DAMPED: bool>(particles: &mut Particles, springs: &[Spring], shares: &[[f32; 2]], k: f32, c: f32) {
-    let (groups, rest) = springs.as_chunks::<ABREAST>();
-    let (group_shares, rest_shares) = shares.as_chunks::<ABREAST>();
-    for (springs, shares) in groups.iter().zip(group_shares) {
-        solve_abreast::<DAMPED, ABREAST>(particles, springs, shares, k, c);
-    }
-    for (spring, share) in rest.iter().zip(rest_shares) {
-        solve_abreast::<DAMPED, 1>(particles, &[*spring], &[*share], k, c);
     }
 }
 
 #[inline(always)]
-fn solve_abreast<const DAMPED: bool, const N: usize>(
-    particles: &mut Particles,
-    springs: &[Spring; N],
-    shares: &[[f32; 2]; N],
-    k: f32,
-    c: f32,
+fn gather<S: Simd>(simd: S, beads: &[[f32; 4]], [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [f32x8<S>; 4] {
+    apart(
+        simd,
+        [
+            bead(beads, a),
+            bead(beads, b),
+            bead(beads, c),
+            bead(beads, d),
+            bead(beads, e),
+            bead(beads, f),
+            bead(beads, g),
+            bead(beads, h),
+        ],
+    )
+}
+
+#[inline(always)]
+fn bead<'a>(beads: &'a [[f32; 4]], i: &u32) -> &'a [f32; 4] {
+    &beads[*i as usize]
+}
+
+/// Solves all springs of `batches` once, batch after batch, in a substep of `h` seconds.
+pub(in crate::solver) fn solve<'a>(
+    lanes: &mut Lanes,
+    topology: &Topology,
+    batches: impl Iterator<Item = &'a SpringBatch>,
+    material: &Material,
+    h: f32,
+    beads: &mut Beads,
+    instructions: Instructions,
 ) {
-    let Particles { position, previous, .. } = particles;
-    let along = springs.map(|Spring { a, b, .. }| position[a as usize] - position[b as usize]);
-    let squared = along.map(|along| along.length_squared());
-    let mut push = [0.0; N];
-    for i in 0..N {
-        let length = squared[i].sqrt().max(SHORTEST);
-        push[i] = k * (springs[i].rest - length) / length;
+    let level = instructions.level();
+    let mut batches = batches.map(|batch| (batch, Scaled::new(material.spring(batch.kind), h)));
+    let mut batches = batches.by_ref().filter(|(_, constants)| constants.acts()).peekable();
+    if batches.peek().is_none() {
+        return;
     }
-    if DAMPED {
-        for i in 0..N {
-            let Spring { a, b, .. } = springs[i];
-            let before = previous[a as usize] - previous[b as usize];
-            push[i] -= c * along[i].dot(along[i] - before) / squared[i].max(SHORTEST * SHORTEST);
+    if material.springs.iter().any(|spring| spring.damping > 0.0) {
+        dispatch!(level, simd => beads.read::<_, true>(simd, lanes));
+    } else {
+        dispatch!(level, simd => beads.read::<_, false>(simd, lanes));
+    }
+    for (batch, constants) in batches {
+        let springs = &topology.springs[batch.range.clone()];
+        if constants.c > 0.0 {
+            dispatch!(level, simd => solve_batch::<_, true>(simd, beads, springs, constants));
+        } else {
+            dispatch!(level, simd => solve_batch::<_, false>(simd, beads, springs, constants));
         }
     }
-    for i in 0..N {
-        let Spring { a, b, .. } = springs[i];
-        let [share_a, share_b] = shares[i];
-        position[a as usize] += along[i] * (push[i] * share_a);
-        position[b as usize] -= along[i] * (push[i] * share_b);
+    dispatch!(level, simd => beads.write(simd, lanes));
+}
+
+/// Springs of one batch share no particle, so any eight of them may be solved side by side.
+#[inline(always)]
+fn solve_batch<S: Simd, const DAMPED: bool>(simd: S, beads: &mut Beads, springs: &[Spring], constants: Scaled) {
+    let (groups, rest) = springs.as_chunks::<LANES>();
+    for springs in groups {
+        solve_gathered::<S, DAMPED>(simd, beads, springs, constants);
     }
+    if !rest.is_empty() {
+        let nobody = beads.now.len() as u32 - 1;
+        let mut springs = [Spring { a: nobody, b: nobody, rest: 0.0 }; LANES];
+        springs[..rest.len()].copy_from_slice(rest);
+        solve_gathered::<S, DAMPED>(simd, beads, &springs, constants);
+    }
+}
+
+#[inline(always)]
+fn solve_gathered<S: Simd, const DAMPED: bool>(
+    simd: S,
+    beads: &mut Beads,
+    springs: &[Spring; LANES],
+    constants: Scaled,
+) {
+    let [s0, s1, s2, s3, s4, s5, s6, s7] = springs;
+    let a = [s0.a, s1.a, s2.a, s3.a, s4.a, s5.a, s6.a, s7.a];
+    let b = [s0.b, s1.b, s2.b, s3.b, s4.b, s5.b, s6.b, s7.b];
+    let rest = [s0.rest, s1.rest, s2.rest, s3.rest, s4.rest, s5.rest, s6.rest, s7.rest];
+    let (end_a, end_b) = (beads.end::<S, DAMPED>(simd, &a), beads.end::<S, DAMPED>(simd, &b));
+    let [at_a, at_b] = solve_eight::<S, DAMPED>(simd, end_a, end_b, lane(simd, &rest), constants);
+    beads.put(&a, at_a, end_a.inverse_mass);
+    beads.put(&b, at_b, end_b.inverse_mass);
 }
 
 /// Strain of a spring: length over rest length, less one. Positive when stretched.
@@ -116,52 +232,50 @@ pub fn strain(position: &[Vec3A], spring: &Spring) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::{SpringBatch, SpringKind};
+    use crate::solver::{Particles, SpringKind, lanes::Order};
 
-    fn pair(distance: f32) -> (Particles, Topology) {
+    fn pair(distance: f32) -> (Lanes, Topology) {
+        let mut lanes = Lanes::default();
         let particles = Particles {
             position: vec![Vec3A::ZERO, Vec3A::X * distance],
-            previous: vec![Vec3A::ZERO, Vec3A::X * distance],
             velocity: vec![Vec3A::ZERO; 2],
             inverse_mass: vec![0.0, 2.0],
             force: vec![Vec3A::ZERO; 2],
         };
+        lanes.load(&particles, Order::plain(2), Instructions::Best);
+        lanes.previous = lanes.position.clone();
         let topology = Topology {
             springs: vec![Spring { a: 0, b: 1, rest: 1.0 }],
-            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1 }],
+            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1, woven: false }],
             areas: vec![1.0; 2],
             ..Default::default()
         };
-        (particles, topology)
+        (lanes, topology)
     }
 
-    fn material(stiffness: f32, damping: f32) -> Material {
+    fn solve_once(lanes: &mut Lanes, topology: &Topology, stiffness: f32, damping: f32) {
         let mut springs = [SpringConstants::default(); 3];
         springs[0] = SpringConstants { stiffness, damping };
-        Material { density: 1.0, springs, damping: 0.0, thickness: 0.0, friction: 0.0, drag: 0.0, lift: 0.0 }
-    }
-
-    fn solve_once(particles: &mut Particles, topology: &Topology, material: &Material) {
-        let mut shares = [[0.0; 2]];
-        weigh(particles, topology, material, 0.1, &mut shares);
-        solve(particles, topology, material, 0.1, &shares);
+        let material =
+            Material { density: 1.0, springs, damping: 0.0, thickness: 0.0, friction: 0.0, drag: 0.0, lift: 0.0 };
+        solve(lanes, topology, topology.batches.iter(), &material, 0.1, &mut Beads::default(), Instructions::Best);
     }
 
     #[test]
     fn a_spring_moves_by_the_implicit_euler_answer() {
-        let (mut particles, topology) = pair(1.5);
-        solve_once(&mut particles, &topology, &material(100.0, 3.0));
+        let (mut lanes, topology) = pair(1.5);
+        solve_once(&mut lanes, &topology, 100.0, 3.0);
         // Implicit Euler for m = 0.5 kg: m Δx = h² (-k (s + Δx) - c Δx / h), with the stretch s = 0.5 m.
         let expected = -100.0 * 0.01 * 0.5 / (0.5 + 100.0 * 0.01 + 3.0 * 0.1);
-        assert!((particles.position[1].x - 1.5 - expected).abs() < 1e-6);
-        assert_eq!(particles.position[0], Vec3A::ZERO);
+        assert!((lanes.position.get(1).x - 1.5 - expected).abs() < 1e-6);
+        assert_eq!(lanes.position.get(0), Vec3A::ZERO);
     }
 
     #[test]
     fn springs_without_stiffness_or_length_stay_finite() {
-        let (mut particles, topology) = pair(0.0);
-        solve_once(&mut particles, &topology, &material(0.0, 0.0));
-        solve_once(&mut particles, &topology, &material(1e9, 1e9));
-        assert!(particles.is_finite());
+        let (mut lanes, topology) = pair(0.0);
+        solve_once(&mut lanes, &topology, 0.0, 0.0);
+        solve_once(&mut lanes, &topology, 1e9, 1e9);
+        assert!(lanes.position.get(1).is_finite());
     }
 }

@@ -7,8 +7,14 @@
 //! Kim, Chentanez and Müller-Fischer, "Long Range Attachments" (2012). One-sided: a slack tether does nothing.
 
 use bevy::math::Vec3A;
+use fearless_simd::{dispatch, f32x8, prelude::*};
 
-use crate::solver::Particles;
+use crate::solver::{
+    Lanes, Level, Topology,
+    lanes::{Block, Order},
+    level::Transfer,
+    simd::{Instructions, LANES, Lane, Vec3x8, lane},
+};
 
 /// The longest distance that a particle may have from a fixed one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,20 +27,214 @@ pub struct Tether {
     pub length: f32,
 }
 
+/// All tethers of a cloth, those of eight particles side by side.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tethers {
+    /// Who stands where.
+    order: Order,
+    /// The particles that hold others.
+    pins: Vec<u32>,
+    /// Tethers of the particles.
+    blocks: Vec<TetherBlock>,
+    /// Tethers of each level's nodes.
+    levels: Vec<Vec<TetherBlock>>,
+}
+
+/// Tethers of the eight particles of a block, one each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::solver) struct TetherBlock {
+    /// The block.
+    block: u32,
+    /// The one pin of all eight, as its place in the list of pins.
+    only_pin: Option<u32>,
+    /// Their pins, as their places in the list.
+    pins: [u32; LANES],
+    /// Their lengths, m. Infinite where there is no tether.
+    lengths: Lane,
+}
+
+/// Where the pins of tethers are, m.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct PinPlaces(Vec<[f32; 3]>);
+
+impl Tethers {
+    /// Puts tethers of a cloth side by side. Nodes of its levels have those of their particles.
+    pub fn new(tethers: &[Tether], topology: &Topology) -> Self {
+        let mut pins: Vec<u32> = tethers.iter().map(|tether| tether.pin).collect();
+        pins.sort_unstable();
+        pins.dedup();
+        let place = |pin: u32| pins.partition_point(|&other| other < pin) as u32;
+        let order = topology.order();
+        let mut of_slot: Vec<Vec<Tether>> = vec![Vec::new(); order.block_count() * LANES];
+        for tether in tethers {
+            of_slot[order.slot(tether.particle)].push(Tether { pin: place(tether.pin), ..*tether });
+        }
+        let of = |slot: u32| of_slot.get(slot as usize).cloned().unwrap_or_default();
+        let blocks = (0..order.block_count()).map(|block| core::array::from_fn(|l| of((block * LANES + l) as u32)));
+        Self {
+            blocks: side_by_side(blocks),
+            levels: topology.levels.iter().map(|level| tethers_of_level(level, of)).collect(),
+            order,
+            pins,
+        }
+    }
+
+    /// Drops the tethers to all pins but some.
+    pub(crate) fn keep(&mut self, is_kept: impl Fn(u32) -> bool) {
+        let Self { pins, blocks, levels, .. } = self;
+        for blocks in levels.iter_mut().chain([blocks]) {
+            for block in blocks.iter_mut() {
+                for (length, &pin) in block.lengths.iter_mut().zip(&block.pins) {
+                    *length = if is_kept(pins[pin as usize]) { *length } else { f32::INFINITY };
+                }
+            }
+            blocks.retain(|block| block.lengths.iter().any(|&length| length < f32::INFINITY));
+        }
+    }
+
+    /// Every tether.
+    pub fn iter(&self) -> impl Iterator<Item = Tether> {
+        let particles: Vec<[Option<u32>; LANES]> = self.order.particles().collect();
+        self.blocks.iter().flat_map(move |block| {
+            let particles = particles[block.block as usize];
+            let held = (0..LANES).filter(|&l| block.lengths[l] < f32::INFINITY);
+            let tether = |l: usize| {
+                let pin = self.pins[block.pins[l] as usize];
+                Some(Tether { particle: particles[l]?, pin, length: block.lengths[l] })
+            };
+            held.filter_map(tether).collect::<Vec<_>>()
+        })
+    }
+
+    /// Number of tethers.
+    pub fn len(&self) -> usize {
+        let lengths = self.blocks.iter().flat_map(|block| block.lengths);
+        lengths.filter(|&length| length < f32::INFINITY).count()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.blocks.is_empty()
+    }
+
+    /// Tethers of the particles.
+    pub(in crate::solver) fn of_cloth(&self) -> &[TetherBlock] {
+        &self.blocks
+    }
+
+    /// Tethers of a level's nodes.
+    pub(in crate::solver) fn of_level(&self, level: usize) -> &[TetherBlock] {
+        self.levels.get(level).map_or(&[], |blocks| blocks)
+    }
+}
+
+/// Blocks of the tethers of a level's nodes, given those `of` slots.
+fn tethers_of_level(level: &Level, of: impl Fn(u32) -> Vec<Tether>) -> Vec<TetherBlock> {
+    match &level.transfer {
+        Transfer::Lattice { slots, .. } => side_by_side(slots.iter().map(|block| block.map(&of))),
+        Transfer::Chart { nodes, .. } => {
+            let tethers: Vec<Vec<Tether>> = nodes.iter().map(|node| tethers_between(node, &of)).collect();
+            let block = |nodes: &[Vec<Tether>]| core::array::from_fn(|l| nodes.get(l).cloned().unwrap_or_default());
+            side_by_side(tethers.chunks(LANES).map(block))
+        }
+    }
+}
+
+/// Tethers of a point of a triangle: to the pins that all of its corners are held by. A corner that is a pin itself is
+/// no way off it.
+fn tethers_between((corners, weights): &([u32; 3], [f32; 3]), of: &impl Fn(u32) -> Vec<Tether>) -> Vec<Tether> {
+    let corners: Vec<(Vec<Tether>, f32)> =
+        (corners.iter().map(|&slot| of(slot)).zip(*weights)).filter(|&(_, weight)| weight > 0.0).collect();
+    let Some((first, _)) = corners.first() else { return Vec::new() };
+    let to = |pin: u32| {
+        let length = |(tethers, weight): &(Vec<Tether>, f32)| {
+            Some(tethers.iter().find(|tether| tether.pin == pin)?.length * weight)
+        };
+        corners.iter().map(length).sum::<Option<f32>>()
+    };
+    first.iter().filter_map(|&tether| Some(Tether { length: to(tether.pin)?, ..tether })).collect()
+}
+
+/// Blocks of the tethers of particles in blocks. As many lanes of one as can have the same pin.
+fn side_by_side(particles: impl Iterator<Item = [Vec<Tether>; LANES]>) -> Vec<TetherBlock> {
+    let mut blocks = Vec::new();
+    for (number, mut left) in (0..).zip(particles) {
+        while let Some(&Tether { pin, .. }) = left.iter().flatten().next() {
+            let mut block =
+                TetherBlock { block: number, only_pin: None, pins: [pin; LANES], lengths: [f32::INFINITY; LANES] };
+            for (lane, left) in left.iter_mut().enumerate().filter(|(_, left)| !left.is_empty()) {
+                let tether = left.remove(left.iter().position(|tether| tether.pin == pin).unwrap_or(0));
+                (block.pins[lane], block.lengths[lane]) = (tether.pin, tether.length);
+            }
+            block.only_pin = block.pins.iter().all(|&other| other == pin).then_some(pin);
+            blocks.push(block);
+        }
+    }
+    blocks
+}
+
+impl PinPlaces {
+    /// Looks up where the pins are by now.
+    pub fn read(&mut self, tethers: &Tethers, lanes: &Lanes) {
+        self.0.clear();
+        let place = |&pin: &u32| lanes.position.get(lanes.order.slot(pin)).to_array();
+        self.0.extend(tethers.pins.iter().map(place));
+    }
+}
+
 /// Pulls every particle that is too far out back to the end of its tether.
-pub fn solve(particles: &mut Particles, tethers: &[Tether], slack: f32) {
-    for &Tether { particle, pin, length } in tethers {
-        let pin = particles.position[pin as usize];
-        pull_back(particles, particle as usize, pin, length * (1.0 + slack));
+pub(in crate::solver) fn solve(
+    position: &mut [Block],
+    inverse_mass: &[Lane],
+    tethers: &[TetherBlock],
+    pins: &PinPlaces,
+    slack: f32,
+    instructions: Instructions,
+) {
+    dispatch!(instructions.level(), simd => solve_blocks(simd, position, inverse_mass, tethers, &pins.0, slack));
+}
+
+#[inline(always)]
+fn solve_blocks<S: Simd>(
+    simd: S,
+    position: &mut [Block],
+    inverse_mass: &[Lane],
+    tethers: &[TetherBlock],
+    pins: &[[f32; 3]],
+    slack: f32,
+) {
+    for tether in tethers {
+        let at = tether.block as usize;
+        let place = Vec3x8::load(simd, &position[at]);
+        let pin = match tether.only_pin {
+            Some(pin) => Vec3x8::splat(simd, pins[pin as usize]),
+            None => {
+                let mut places = Block::default();
+                for (l, pin) in tether.pins.iter().enumerate() {
+                    (places[0][l], places[1][l], places[2][l]) = pins[*pin as usize].into();
+                }
+                Vec3x8::load(simd, &places)
+            }
+        };
+        let away = place - pin;
+        let squared = away.dot(away);
+        let reach = lane(simd, &tether.lengths) * (1.0 + slack);
+        let is_free = lane(simd, &inverse_mass[at]).simd_gt(f32x8::splat(simd, 0.0));
+        let is_taut = is_free & squared.simd_gt(reach * reach);
+        if is_taut.any_true() {
+            let end = pin + away * (reach / squared.sqrt());
+            end.or(is_taut, place).store(&mut position[at]);
+        }
     }
 }
 
 /// Moves a free particle that is farther than `reach` from `hold` straight back to that distance.
 #[inline]
-pub(super) fn pull_back(particles: &mut Particles, particle: usize, hold: Vec3A, reach: f32) {
-    let away = particles.position[particle] - hold;
+pub(super) fn pull_back(lanes: &mut Lanes, particle: u32, hold: Vec3A, reach: f32) {
+    let slot = lanes.order.slot(particle);
+    let away = lanes.position.get(slot) - hold;
     let distance_squared = away.length_squared();
-    if distance_squared > reach * reach && particles.inverse_mass[particle] > 0.0 {
-        particles.position[particle] = hold + away * (reach / distance_squared.sqrt());
+    if distance_squared > reach * reach && lanes.inverse_mass(slot) > 0.0 {
+        lanes.position.set(slot, hold + away * (reach / distance_squared.sqrt()));
     }
 }

@@ -12,7 +12,7 @@
 
 use bevy::math::{DVec3, Isometry3d, Vec3A};
 
-use crate::solver::{Particles, Scratch, StepContext, Topology};
+use crate::solver::{Particles, StepContext, Topology};
 
 mod gusts;
 
@@ -103,13 +103,25 @@ impl WindSource {
     }
 }
 
-/// Writes the velocity of the air at each particle into the scratch, once a step.
-pub fn sample_air(particles: &Particles, ctx: &StepContext, scratch: &mut Scratch) {
-    scratch.air_velocity.fill(Vec3A::ZERO);
-    if !feels_air(ctx) {
-        return;
+/// The air around a cloth during a step.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Air {
+    /// Its velocity at each particle, m/s.
+    velocity: Vec<Vec3A>,
+    /// A third of its velocity as each particle feels it: less its own, m/s.
+    relative: Vec<Vec3A>,
+}
+
+impl Air {
+    /// Takes the velocity of the air at each particle, once a step.
+    pub fn sample(&mut self, particles: &Particles, ctx: &StepContext) {
+        self.velocity.clear();
+        self.velocity.resize(particles.len(), Vec3A::ZERO);
+        self.relative.resize(particles.len(), Vec3A::ZERO);
+        if feels_air(ctx) {
+            add_air_velocity(ctx.winds, &particles.position, &particles.position, &mut self.velocity);
+        }
     }
-    add_air_velocity(ctx.winds, &particles.position, &particles.position, &mut scratch.air_velocity);
 }
 
 /// Adds the velocity of all winds at each of `places` to `air`, as a cloth with particles at `position` feels it there.
@@ -125,17 +137,20 @@ pub(crate) fn add_air_velocity(winds: &[WindSource], position: &[Vec3A], places:
     }
 }
 
-/// Renews the steady force: external forces, and the force of the air, a third of each triangle's to each vertex.
+/// Adds the force of the air to the steady `force` (N), a third of each triangle's to each vertex.
 ///
 /// The force stands for `interval` seconds. It is limited so that it can't turn a triangle's velocity against the
 /// air around within that time, which is what makes light cloth in a storm stable.
-pub fn apply_air(particles: &Particles, topology: &Topology, ctx: &StepContext, interval: f32, scratch: &mut Scratch) {
-    let Scratch { steady_force, air_velocity, relative_air, .. } = scratch;
-    steady_force.copy_from_slice(&particles.force);
-    if !feels_air(ctx) {
-        return;
-    }
-    for ((relative, &air), &velocity) in relative_air.iter_mut().zip(&*air_velocity).zip(&particles.velocity) {
+pub(in crate::solver) fn apply_air(
+    particles: &Particles,
+    topology: &Topology,
+    ctx: &StepContext,
+    interval: f32,
+    air: &mut Air,
+    force: &mut [Vec3A],
+) {
+    let Air { velocity, relative: relative_air } = air;
+    for ((relative, &air), &velocity) in relative_air.iter_mut().zip(&*velocity).zip(&particles.velocity) {
         *relative = (air - velocity) / 3.0;
     }
     let position = &particles.position;
@@ -159,13 +174,13 @@ pub fn apply_air(particles: &Particles, topology: &Topology, ctx: &StepContext, 
         let blown = u * along + normal * across.copysign(flow);
         let rate = (0.5 * half_density * flow.abs()).min(most_per_rest_area * rest_area);
         let share = blown * (rate / 3.0);
-        steady_force[i] += share;
-        steady_force[j] += share;
-        steady_force[k] += share;
+        force[i] += share;
+        force[j] += share;
+        force[k] += share;
     }
 }
 
 /// Whether the air acts on this cloth at all.
-fn feels_air(ctx: &StepContext) -> bool {
+pub(in crate::solver) fn feels_air(ctx: &StepContext) -> bool {
     ctx.fluid_density > 0.0 && ctx.material.drag + ctx.material.lift > 0.0
 }

@@ -40,7 +40,7 @@ fn the_latest_step_is_measured() {
     let lying = ClothGrid::new(1.0, 1.0, 8, 8).lying();
     let above = |height| Transform::from_xyz(0.0, height, 0.0);
     let cloths = [0.05, 0.3].map(|height| spawn_cloth(&mut app, lying, above(height)));
-    let failed = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 3, 3), Cloth { substeps: 0, ..default() });
+    let failed = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 3, 3), Cloth { substeps: Some(0), ..default() });
     app.world_mut().spawn(ClothCollider::from(Sphere::new(0.05)));
     app.world_mut().spawn((ClothCollider::from(Cuboid::new(3.0, 1.0, 3.0)), above(-0.5)));
     run(&mut app, 60);

@@ -1,0 +1,193 @@
+//! Finds rows and columns: whether the cells of a mesh form one rectangle, or a tube that can be cut open into one.
+//!
+//! ```text
+//!   p --- along --- .       the first row of cells, walked across its upright sides
+//!   |       |       |
+//!  down --- . ----- .       and down from there, row after row, across the level ones
+//! ```
+
+use bevy::platform::collections::HashMap;
+
+use super::cells::Cells;
+use crate::solver::{Lattice, Spring, SpringKind};
+
+/// Particles row after row, as they stand in the mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Rectangle {
+    pub columns: usize,
+    /// Whether the last column is joined to the first: it is a tube, cut open.
+    pub closed: bool,
+    /// Particles of all rows.
+    pub particles: Vec<u32>,
+}
+
+impl Rectangle {
+    /// Whether the particles are numbered row by row.
+    pub fn is_in_order(&self) -> bool {
+        (0..).zip(&self.particles).all(|(i, &particle)| i == particle)
+    }
+}
+
+/// The rectangle that all `count` particles of a mesh are in, if they are in one.
+///
+/// It begins at the lowest particle that may be a corner and goes on towards its lowest neighbour: a grid that is
+/// numbered row by row keeps its numbers.
+pub(super) fn find(cells: &Cells, count: usize) -> Option<Rectangle> {
+    let mesh = CellMesh::new(cells)?;
+    mesh.starts().into_iter().find_map(|start| mesh.rectangle_from(start, count))
+}
+
+/// A side of a cell.
+type Side = (u32, u32);
+
+/// Cells by their sides.
+struct CellMesh<'a> {
+    corners: &'a [[u32; 4]],
+    /// One or two cells of each side, its lower end first.
+    cells_of_side: HashMap<Side, Vec<u32>>,
+}
+
+impl<'a> CellMesh<'a> {
+    /// None where a triangle isn't in a cell or a side has more than two cells.
+    fn new(cells: &'a Cells) -> Option<Self> {
+        if cells.of_triangle.iter().any(Option::is_none) {
+            return None;
+        }
+        let mut cells_of_side: HashMap<Side, Vec<u32>> = HashMap::default();
+        for (cell, [a, b, c, d]) in (0..).zip(cells.corners.iter().copied()) {
+            for side in [(a, b), (b, c), (c, d), (d, a)] {
+                let sides = cells_of_side.entry(sorted(side)).or_default();
+                sides.push(cell);
+                if sides.len() > 2 {
+                    return None;
+                }
+            }
+        }
+        Some(Self { corners: &cells.corners, cells_of_side })
+    }
+
+    /// Cells and their sides to start from: at a corner of the whole if it has one, else at its border, else anywhere,
+    /// and there at the lowest particle.
+    fn starts(&self) -> Vec<(u32, Side)> {
+        let inside = |side: Side| self.cells_of_side[&sorted(side)].len() - 1;
+        let mut starts: Vec<(usize, Side, u32)> = (0..)
+            .zip(self.corners)
+            .flat_map(|(cell, c)| (0..4).map(move |i| (cell, c[i], [c[(i + 1) % 4], c[(i + 3) % 4]])))
+            .flat_map(|(cell, p, [q, r])| {
+                let rank = inside((p, q)) + inside((p, r));
+                [(rank, (p, q), cell), (rank, (p, r), cell)]
+            })
+            .collect();
+        starts.sort_unstable();
+        let best = starts.first().map(|&(rank, (p, _), _)| (rank, p));
+        let equal = starts.into_iter().take_while(|&(rank, (p, _), _)| Some((rank, p)) == best);
+        equal.map(|(_, side, cell)| (cell, side)).collect()
+    }
+
+    fn rectangle_from(&self, (cell, (p, along)): (u32, Side), count: usize) -> Option<Rectangle> {
+        let below = self.opposite(cell, (p, along))?;
+        let (mut above, mut row, mut cells) = (vec![p, along], vec![below.0, below.1], vec![cell]);
+        let (mut cell, mut side) = (cell, (along, below.1));
+        let mut closed = false;
+        while let Some(next) = self.across(cell, side)
+            && let Some((p, q)) = self.opposite(next, side)
+        {
+            // A tube is cut open where the row comes back to its first particle.
+            closed = p == above[0];
+            if closed {
+                break;
+            }
+            above.push(p);
+            row.push(q);
+            cells.push(next);
+            (cell, side) = (next, (p, q));
+        }
+        let columns = row.len();
+        let mut particles = [above, row.clone()].concat();
+        while particles.len() < count {
+            row = self.next_row(&row, &mut cells)?;
+            particles.extend(&row);
+        }
+        let mut seen = vec![false; count];
+        let is_new = |&particle: &u32| !core::mem::replace(&mut seen[particle as usize], true);
+        (particles.len() == count && particles.iter().all(is_new)).then_some(Rectangle { columns, closed, particles })
+    }
+
+    /// The particles below a row, given the `cells` above it, which become those below it.
+    fn next_row(&self, row: &[u32], cells: &mut [u32]) -> Option<Vec<u32>> {
+        let mut next = Vec::with_capacity(row.len());
+        for (cell, side) in cells.iter_mut().zip(row.windows(2)) {
+            let side = (side[0], side[1]);
+            *cell = self.across(*cell, side)?;
+            let (p, q) = self.opposite(*cell, side)?;
+            match next.last() {
+                None => next.extend([p, q]),
+                Some(&last) if last == p => next.push(q),
+                Some(_) => return None,
+            }
+        }
+        Some(next)
+    }
+
+    /// The cell on the other side of a cell's side.
+    fn across(&self, cell: u32, side: Side) -> Option<u32> {
+        let cells = self.cells_of_side.get(&sorted(side))?;
+        cells.iter().copied().find(|&other| other != cell)
+    }
+
+    /// The corners opposite a side's ends, in their order.
+    fn opposite(&self, cell: u32, (p, q): Side) -> Option<Side> {
+        let c = self.corners[cell as usize];
+        let i = c.iter().position(|&corner| corner == p)?;
+        let (after, across, before) = (c[(i + 1) % 4], c[(i + 2) % 4], c[(i + 3) % 4]);
+        match q {
+            q if q == after => Some((before, across)),
+            q if q == before => Some((after, across)),
+            _ => None,
+        }
+    }
+}
+
+fn sorted((p, q): Side) -> Side {
+    (p.min(q), p.max(q))
+}
+
+/// Ways from a particle to those that the springs of a lattice join it with.
+const WAYS: [(SpringKind, (isize, isize)); 6] = [
+    (SpringKind::Structural, (0, 1)),
+    (SpringKind::Structural, (1, 0)),
+    (SpringKind::Shear, (1, 1)),
+    (SpringKind::Shear, (1, -1)),
+    (SpringKind::Bend, (0, 2)),
+    (SpringKind::Bend, (2, 0)),
+];
+
+/// The lattice of the particles of a rectangle, numbered row by row, and whether each of `springs` is on it.
+pub(super) fn weave(rectangle: &Rectangle, springs: &[(SpringKind, Spring)]) -> (Lattice, Vec<bool>) {
+    let Rectangle { columns, closed, particles } = rectangle;
+    let (columns, closed) = (*columns, *closed);
+    let place = |particle: u32| (particle as usize / columns, particle as usize % columns);
+    let mut lengths = vec![[0.0; WAYS.len()]; particles.len()];
+    let mut put = |&(kind, Spring { a, b, rest }): &(SpringKind, Spring)| {
+        let (first, second) = (a.min(b), a.max(b));
+        let (from, to) = (place(first), place(second));
+        let way = (to.0 as isize - from.0 as isize, to.1 as isize - from.1 as isize);
+        let closes = closed && columns > 2 && way == (0, columns as isize - 1);
+        let (from, way) = if closes { (second, (0, 1)) } else { (first, way) };
+        let known = WAYS.iter().position(|&known| known == (kind, way));
+        known.is_some_and(|known| {
+            let length = &mut lengths[from as usize][known];
+            let is_new = *length == 0.0 && rest > 0.0;
+            if is_new {
+                *length = rest;
+            }
+            is_new
+        })
+    };
+    let woven = springs.iter().map(&mut put).collect();
+    let length = |(row, column): (usize, usize), way| {
+        let known = WAYS.iter().position(|&(_, known)| known == way);
+        known.map_or(0.0, |known| lengths[row * columns + column][known])
+    };
+    (Lattice::new(particles.len() / columns, columns, closed, length), woven)
+}

@@ -1,0 +1,267 @@
+//! Coarse levels of strands: they carry the long waves.
+//!
+//! ```text
+//!   o---.---.---.---o---.---.---.---o      o nodes     . particles between them
+//! ```
+//!
+//! A strand takes a pull along one thread within a substep, not around a corner. On a lattice of few nodes a few
+//! iterations take it everywhere. Each level, the coarsest first, starts from where its nodes are by now, pulls at
+//! threads that are longer than the cloth is (slack ones fold between the nodes: they are left alone), and hands its
+//! nodes' ways on to the next, at last to all particles, interpolated. Like tethers, levels hold cloth within its own
+//! length and a slack, however soft its springs are: where there are no tethers, there are no levels.
+//!
+//! A multigrid of displacements in the spirit of Müller, "Hierarchical Position Based Dynamics" (2008), with exact
+//! strands as the smoother.
+
+use bevy::math::Vec3A;
+use fearless_simd::{dispatch, f32x8, prelude::*};
+
+use super::{
+    spring::Scaled,
+    strand::Pull,
+    tether::{self, PinPlaces, TetherBlock},
+    weave::{self, Last, Loom, Sheet, Yarn},
+};
+use crate::solver::{
+    Lanes, Level, LevelPass, Tethers,
+    lanes::{Block, Points},
+    level::{Between, Transfer},
+    simd::{Instructions, LANES, Lane, Vec3x8, lane},
+};
+
+/// By how much less than tethers a level gives, no unit: what it leaves, the fine strands are left with.
+const TAUTER: f32 = 0.005;
+
+/// The nodes of a level during a step.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Nodes {
+    position: Points,
+    /// Where they started, and in the end how far they went, m.
+    way: Points,
+    inverse_mass: Vec<Lane>,
+    row_masses: Vec<Lane>,
+}
+
+/// Buffers of all levels.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Levels {
+    nodes: Vec<Nodes>,
+    /// Ways of the finest level's rows, spread over the columns of the cloth.
+    spread: Points,
+}
+
+/// What the levels need to know of a substep.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct LevelRun<'a> {
+    pub levels: &'a [Level],
+    pub passes: &'a [LevelPass],
+    pub tethers: &'a Tethers,
+    pub slack: f32,
+    pub stretch: Scaled,
+    pub last: Last,
+    pub instructions: Instructions,
+}
+
+impl LevelRun<'_> {
+    /// Numbers of the levels that are used, the coarsest first, with their iterations.
+    fn used(&self) -> impl Iterator<Item = (usize, u32)> {
+        let iterations = |level: &Level| self.passes.iter().find(|pass| pass.stride == level.stride);
+        let used =
+            self.levels.iter().enumerate().filter_map(move |(i, level)| Some((i, iterations(level)?.iterations)));
+        used.filter(|&(_, iterations)| iterations > 0)
+    }
+}
+
+impl Levels {
+    /// Makes room, and gives the nodes their masses, once a step.
+    pub fn fit(&mut self, run: &LevelRun, lanes: &Lanes) {
+        self.nodes.resize_with(self.nodes.len().max(run.levels.len()), Nodes::default);
+        for (i, _) in run.used() {
+            self.nodes[i].fit(&run.levels[i], lanes);
+        }
+    }
+
+    /// Moves all particles of the cloth along with the levels, once a substep.
+    pub fn solve(&mut self, run: &LevelRun, lanes: &mut Lanes, pins: &PinPlaces, loom: &mut Loom) {
+        let mut coarser: Option<usize> = None;
+        for (i, iterations) in run.used() {
+            let (done, rest) = self.nodes.split_at_mut(i);
+            let (level, nodes) = (&run.levels[i], &mut rest[0]);
+            nodes.restrict(level, lanes);
+            if let Some(coarser) = coarser {
+                nodes.add_ways(level, &run.levels[coarser], &done[coarser].way);
+            }
+            let tethers = run.tethers.of_level(i);
+            for _ in 0..iterations {
+                nodes.iterate(level, run, tethers, pins, loom);
+            }
+            nodes.finish();
+            coarser = Some(i);
+        }
+        if let Some(i) = coarser {
+            let Self { nodes, spread } = self;
+            let level = run.instructions.level();
+            dispatch!(level, simd => nodes[i].prolong(simd, &run.levels[i], lanes, spread));
+        }
+    }
+}
+
+impl Nodes {
+    fn fit(&mut self, level: &Level, lanes: &Lanes) {
+        let blocks = level.lattice.order().block_count();
+        self.position.resize(blocks);
+        self.way.resize(blocks);
+        self.inverse_mass.clear();
+        self.inverse_mass.resize(blocks, Lane::default());
+        let masses = self.inverse_mass.as_flattened_mut();
+        match &level.transfer {
+            Transfer::Lattice { slots, .. } => {
+                for (mass, &slot) in
+                    masses.iter_mut().zip(slots.as_flattened()).filter(|(_, slot)| **slot != Level::NOBODY)
+                {
+                    *mass = lanes.inverse_mass(slot as usize) / level.share;
+                }
+            }
+            Transfer::Chart { nodes, .. } => {
+                for (mass, (corners, weights)) in masses.iter_mut().zip(nodes) {
+                    let of_corner = |i: usize| weights[i] * lanes.inverse_mass(corners[i] as usize);
+                    *mass = (of_corner(0) + of_corner(1) + of_corner(2)) / level.share;
+                }
+            }
+        }
+        weave::masses_along_rows(&level.lattice, &self.inverse_mass, &mut self.row_masses);
+    }
+
+    /// Puts the nodes where the cloth is.
+    fn restrict(&mut self, level: &Level, lanes: &Lanes) {
+        match &level.transfer {
+            Transfer::Lattice { slots, .. } => {
+                for (node, &slot) in slots.as_flattened().iter().enumerate() {
+                    if slot != Level::NOBODY {
+                        self.position.set(node, lanes.position.get(slot as usize));
+                    }
+                }
+            }
+            Transfer::Chart { nodes, .. } => {
+                for (node, (corners, weights)) in nodes.iter().enumerate() {
+                    let corner = |i: usize| lanes.position.get(corners[i] as usize) * weights[i];
+                    self.position.set(node, corner(0) + corner(1) + corner(2));
+                }
+            }
+        }
+        self.way.clone_from(&self.position);
+    }
+
+    /// Moves the nodes along with those of a coarser level.
+    fn add_ways(&mut self, level: &Level, coarser: &Level, ways: &Points) {
+        let (order, from) = (level.lattice.order(), coarser.lattice.order());
+        for (row, &at_row) in level.rows.iter().enumerate() {
+            let down = Between::locate(&coarser.rows, at_row);
+            for (column, &at_column) in level.columns.iter().enumerate() {
+                let slot = order.slot_at(row, column);
+                if self.inverse_mass[slot / LANES][slot % LANES] > 0.0 {
+                    let along = Between::locate_on(coarser.ring, &coarser.columns, at_column);
+                    let after = (along.first + 1) % coarser.columns.len() as u32;
+                    let in_row = |row: u32| {
+                        let way = |column: u32| ways.get(from.slot_at(row as usize, column as usize));
+                        way(along.first).lerp(way(after), along.share)
+                    };
+                    let way = in_row(down.first).lerp(in_row(down.first + 1), down.share);
+                    self.position.set(slot, self.position.get(slot) + way);
+                }
+            }
+        }
+    }
+
+    fn iterate(&mut self, level: &Level, run: &LevelRun, tethers: &[TetherBlock], pins: &PinPlaces, loom: &mut Loom) {
+        let position = &mut self.position.0;
+        tether::solve(position, &self.inverse_mass, tethers, pins, run.slack, run.instructions);
+        let mut sheet =
+            Sheet { position, previous: &self.way.0, inverse_mass: &self.inverse_mass, row_masses: &self.row_masses };
+        let yarn =
+            Yarn { stretch: Scaled { c: 0.0, ..run.stretch }, bend: None, give: 1.0 + (run.slack - TAUTER).max(0.0) };
+        weave::solve::<Pull>(&mut sheet, &level.lattice, yarn, run.last, loom, run.instructions);
+    }
+
+    /// Works out how far the nodes went.
+    fn finish(&mut self) {
+        for (way, position) in self.way.0.iter_mut().zip(&self.position.0) {
+            for (way, position) in way.as_flattened_mut().iter_mut().zip(position.as_flattened()) {
+                *way = position - *way;
+            }
+        }
+    }
+
+    /// Moves all free particles of the cloth along with the nodes.
+    #[inline(always)]
+    fn prolong<S: Simd>(&self, simd: S, level: &Level, lanes: &mut Lanes, spread: &mut Points) {
+        match &level.transfer {
+            Transfer::Lattice { between_rows, across_columns, .. } => {
+                self.spread_across(simd, level, lanes.order.pack_count(), across_columns, spread);
+                spread_down(simd, level.rows.len(), between_rows, spread, lanes);
+            }
+            Transfer::Chart { particles, .. } => self.prolong_chart(simd, particles, lanes),
+        }
+    }
+
+    /// Ways of the rows of nodes at all columns of the cloth.
+    #[inline(always)]
+    fn spread_across<S: Simd>(
+        &self,
+        simd: S,
+        level: &Level,
+        packs: usize,
+        across_columns: &[Vec<(u32, Lane)>],
+        spread: &mut Points,
+    ) {
+        let (order, rows) = (level.lattice.order(), level.rows.len());
+        spread.resize(packs * rows);
+        for (nodes, spread) in across_columns.iter().zip(spread.0.chunks_exact_mut(rows)) {
+            for (row, spread) in spread.iter_mut().enumerate() {
+                let mut way = Vec3x8::splat(simd, [0.0; 3]);
+                for (column, shares) in nodes {
+                    let node = self.way.get(order.slot_at(row, *column as usize)).to_array();
+                    way = way + Vec3x8::splat(simd, node) * lane(simd, shares);
+                }
+                way.store(spread);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn prolong_chart<S: Simd>(&self, simd: S, particles: &[([u32; 4], [f32; 4])], lanes: &mut Lanes) {
+        let blocks = lanes.position.0.iter_mut().zip(&lanes.inverse_mass).zip(particles.chunks(LANES));
+        for ((place, w), particles) in blocks {
+            let mut way = Block::default();
+            for (lane, (nodes, shares)) in particles.iter().enumerate() {
+                let mut sum = Vec3A::ZERO;
+                for (&node, &share) in nodes.iter().zip(shares) {
+                    sum += self.way.get(node as usize) * share;
+                }
+                (way[0][lane], way[1][lane], way[2][lane]) = sum.into();
+            }
+            move_free(simd, place, w, Vec3x8::load(simd, &way));
+        }
+    }
+}
+
+/// Moves all free particles of a lattice, between the ways of the rows of nodes.
+#[inline(always)]
+fn spread_down<S: Simd>(simd: S, node_rows: usize, between_rows: &[Between], spread: &Points, lanes: &mut Lanes) {
+    let rows = lanes.order.rows;
+    let places = lanes.position.0.chunks_exact_mut(rows).zip(lanes.inverse_mass.chunks_exact(rows));
+    for ((places, masses), spread) in places.zip(spread.0.chunks_exact(node_rows)) {
+        for ((place, w), &Between { first, share }) in places.iter_mut().zip(masses).zip(between_rows) {
+            let above = Vec3x8::load(simd, &spread[first as usize]);
+            let below = Vec3x8::load(simd, &spread[first as usize + 1]);
+            move_free(simd, place, w, above + (below - above) * f32x8::splat(simd, share));
+        }
+    }
+}
+
+#[inline(always)]
+fn move_free<S: Simd>(simd: S, place: &mut Block, inverse_mass: &Lane, way: Vec3x8<S>) {
+    let before = Vec3x8::load(simd, place);
+    let is_free = lane(simd, inverse_mass).simd_gt(f32x8::splat(simd, 0.0));
+    (before + way).or(is_free, before).store(place);
+}

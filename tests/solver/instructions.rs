@@ -1,0 +1,62 @@
+//! Whatever the processor has, the bits are the same.
+
+use bevy::{
+    math::{DVec3, Isometry3d, Vec3A},
+    prelude::*,
+};
+use bevy_drape::{
+    prelude::{ClothGrid, ClothGrip, Fabric},
+    solver::{ColliderShape, Instructions, Method, Obstacle, WindRegion, WindSource, force::wind::Gusts},
+};
+
+use crate::{
+    bench_bed::{ALL, Bed, bits},
+    grabs::hand,
+    lattices::strewn,
+};
+
+/// A cloth to which all that there is happens at once.
+fn scene(mesh: impl Into<Mesh>, method: Method, damping: f32) -> Bed {
+    let fabric = Fabric {
+        structural_damping: damping,
+        shear_damping: damping,
+        bend_damping: damping,
+        damping: 0.5,
+        ..Fabric::default()
+    };
+    let bed = Bed::new(mesh, fabric.material().unwrap()).pinned([0, 4]).tethered(&[0, 4]).with_levels();
+    let mut bed = Bed { method, max_substeps: 64, ..bed };
+    let gusts = Gusts { strength: 0.5, period: 4.0, turbulence: 0.3, eddy_size: 1.0, seed: 7 };
+    let (region, origin) = (WindRegion::Everywhere, Vec3A::ZERO);
+    let velocity = Vec3A::new(1.0, 2.0, 6.0);
+    bed.winds = vec![WindSource { velocity, gusts, region, origin, travelled: DVec3::ZERO, gusts_passed: 0.0 }];
+    let pose = Isometry3d::from_translation(Vec3::from(bed.centre()) + Vec3::new(0.0, -0.2, 0.2));
+    bed.obstacles =
+        vec![Obstacle { shape: ColliderShape::Sphere(Sphere::new(0.25)), start: pose, end: pose, friction: 1.0 }];
+    bed.grabs = vec![hand(&bed, 100, [0.2, 0.3, 0.5], ClothGrip::default())];
+    bed.particles.force[20] = Vec3A::new(0.01, 0.02, 0.0);
+    bed
+}
+
+#[test]
+fn the_widest_instructions_and_the_plainest_give_the_same_bits() {
+    // In rows and columns that fill blocks of eight, that don't, and in none, without and with levels.
+    let meshes = [
+        Mesh::from(ClothGrid::new(1.0, 1.0, 24, 24)),
+        Mesh::from(ClothGrid::new(1.0, 0.8, 21, 17).lying()),
+        Mesh::from(Sphere::new(0.4)),
+        strewn(20),
+    ];
+    let cases = ALL.into_iter().flat_map(|method| [(method, 0.0), (method, 0.02)]);
+    for ((method, damping), mesh) in cases.flat_map(|case| meshes.iter().map(move |mesh| (case, mesh.clone()))) {
+        let [best, baseline] = [Instructions::Best, Instructions::Baseline].map(|instructions| {
+            let mut bed = scene(mesh.clone(), method, damping);
+            bed.scratch.instructions = instructions;
+            let touched = (0..60).map(|_| bed.step(1.0 / 60.0).contacts).max();
+            assert!(touched > Some(0), "{method:?}: the scene has contacts");
+            assert!(bed.particles.is_finite());
+            bits(&bed.particles)
+        });
+        assert!(best == baseline, "{method:?}, damping {damping}, {} numbers", best.len());
+    }
+}

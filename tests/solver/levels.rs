@@ -1,0 +1,167 @@
+//! Coarse lattices over a cloth: they span it, carry pulls across it, and change nothing else.
+
+use bevy::{math::Vec3A, prelude::*};
+use bevy_drape::{
+    prelude::{ClothGrid, Fabric},
+    solver::{Effort, LevelPass, Method, level::Transfer, measure},
+};
+
+use crate::{
+    bench_bed::{Bed, bare},
+    lattices::{strewn, topology},
+};
+
+#[test]
+fn levels_span_the_cloth_from_border_to_border() {
+    for (columns, rows) in [(32, 32), (33, 20), (100, 9), (3, 50), (16, 16), (128, 128)] {
+        let topology = topology(ClothGrid::new(1.0, 1.0, columns, rows));
+        let (width, height) = (columns as f32 - 1.0, rows as f32 - 1.0);
+        assert!(!topology.levels.is_empty(), "{columns} x {rows}");
+        assert!(topology.levels.is_sorted_by(|coarse, fine| coarse.stride == 2 * fine.stride));
+        assert_eq!(topology.levels.last().map(|level| level.stride), Some(4));
+        for level in &topology.levels {
+            assert_eq!((level.rows[0], level.rows.last()), (0.0, Some(&height)));
+            assert_eq!((level.columns[0], level.columns.last()), (0.0, Some(&width)));
+            assert!(level.rows.is_sorted_by(|a, b| a < b) && level.columns.is_sorted_by(|a, b| a < b));
+            // All threads are as long as the cloth.
+            let lattice = &level.lattice;
+            let (last_row, last_column) = (lattice.rows - 1, lattice.columns - 1);
+            assert!((lattice.length_along_row(last_row, 0..last_column) - 1.0).abs() < 1e-5);
+            assert!((lattice.length_along_column(last_column, 0..last_row) - 1.0).abs() < 1e-5);
+        }
+    }
+    assert!(topology(ClothGrid::new(1.0, 1.0, 15, 15)).levels.is_empty());
+}
+
+#[test]
+fn levels_of_an_irregular_mesh_move_particles_between_their_nodes() {
+    let topology = topology(strewn(40));
+    assert!(topology.lattice.is_none() && topology.levels.len() > 1);
+    for level in &topology.levels {
+        let Transfer::Chart { nodes, particles } = &level.transfer else { panic!("{:?}", level.transfer) };
+        for (corners, weights) in nodes.iter().filter(|(_, weights)| *weights != [0.0; 3]) {
+            assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5 && weights.iter().all(|&weight| weight >= 0.0));
+            assert!(corners.iter().all(|&corner| (corner as usize) < topology.particle_count()));
+        }
+        assert_eq!(particles.len(), topology.particle_count());
+        // What moves nodes evenly moves the particles just so: each is between its nodes.
+        let place = |slot: u32| -> Vec3 {
+            let (corners, weights) = nodes[slot as usize];
+            corners.iter().zip(weights).map(|(&corner, weight)| topology.rest[corner as usize] * weight).sum()
+        };
+        for ((around, shares), rest) in particles.iter().zip(&topology.rest) {
+            let between: Vec3 = around.iter().zip(shares).map(|(&slot, &share)| place(slot) * share).sum();
+            assert!((shares.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+            assert!(between.distance(*rest) < 1e-4, "{rest} is moved as {between}");
+        }
+    }
+}
+
+/// A square metre that hangs by two corners, with all that a game gives it but air and tethers.
+fn hung(mesh: Mesh) -> Bed {
+    let mut bed = Bed::new(mesh, Fabric::default().material().unwrap());
+    let corners = [Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 0.0, -0.5), Vec3::ZERO, Vec3::X];
+    let pins: Vec<u32> = (0..).zip(&bed.topology.rest).filter(|(_, p)| corners.contains(p)).map(|(i, _)| i).collect();
+    bed.fluid_density = 0.0;
+    bed.pinned(pins)
+}
+
+fn largest_strain(bed: &Bed) -> f32 {
+    measure::strain(&bed.particles, &bed.topology).largest
+}
+
+#[test]
+fn levels_leave_less_strain_in_one_substep() {
+    let grid = |n| Mesh::from(ClothGrid::new(1.0, 1.0, n, n).lying());
+    for (name, mesh, is_tethered) in [
+        ("32 x 32", grid(32), true),
+        ("64 x 64", grid(64), true),
+        ("64 x 64", grid(64), false),
+        ("irregular", strewn(40), true),
+        ("irregular", strewn(40), false),
+    ] {
+        let mut bed = hung(mesh);
+        assert_eq!(bed.anchors.len(), 2);
+        if is_tethered {
+            let pins = bed.anchors.iter().map(|anchor| anchor.particle).collect::<Vec<_>>();
+            bed = bed.tethered(&pins);
+        }
+        let strains = [bed.clone(), bed.with_levels()].map(|mut bed| {
+            bed.effort = Effort::fixed(1, bed.effort.levels);
+            bed.run(3.0);
+            largest_strain(&bed)
+        });
+        println!("{name}, tethers {is_tethered}: {strains:?}");
+        assert!(strains[1] < 0.5 * strains[0], "{name}, tethers {is_tethered}: {strains:?}");
+    }
+}
+
+#[test]
+fn levels_leave_a_cloth_alone_that_is_nowhere_too_long() {
+    // Pressed together by a tenth, and turned: coarse threads are slack, and what is between them isn't stretched.
+    let turn = Quat::from_rotation_z(0.3);
+    let pressed = |bed: Bed| {
+        let mut bed = Bed { gravity: Vec3A::ZERO, ..bed };
+        bed.effort = Effort::fixed(1, bed.effort.levels);
+        bed.material = bare(Fabric::default());
+        bed.particles.position.iter_mut().for_each(|p| *p = turn * *p * 0.9);
+        for anchor in &mut bed.anchors {
+            anchor.start = bed.particles.position[anchor.particle as usize];
+            anchor.end = anchor.start;
+        }
+        bed.step(1.0 / 60.0);
+        bed
+    };
+    let mesh = || Mesh::from(ClothGrid::new(1.0, 1.0, 32, 32).lying());
+    let (without, with) = (pressed(hung(mesh())), pressed(hung(mesh()).with_levels()));
+    assert!(!with.effort.levels.is_empty() && with.fastest() > 0.1);
+    assert_eq!(without.particles, with.particles);
+}
+
+#[test]
+fn levels_leave_a_soft_cloth_the_stretch_of_its_weight() {
+    // Hung by its whole upper edge: nothing but the weight below stretches it.
+    let sunk = |bed: Bed| {
+        let mut bed = bed.pinned(0..32);
+        bed.material.damping = 3.0;
+        bed.run(6.0);
+        -0.5 - bed.particles.position.iter().map(|p| p.y).fold(f32::MAX, f32::min)
+    };
+    let mut failures = Vec::new();
+    for stiffness in [50.0, 500.0] {
+        let fabric = Fabric {
+            structural_stiffness: stiffness,
+            shear_stiffness: stiffness / 10.0,
+            bend_stiffness: 1.0,
+            ..Fabric::default()
+        };
+        let bed = Bed::new(ClothGrid::new(1.0, 1.0, 32, 32), bare(fabric));
+        let expected = sunk(Bed { method: Method::Explicit, ..bed.clone() });
+        for max_strain in [0.02, 0.005, 0.001] {
+            let effort = Effort::to_hold(max_strain, &bed.topology);
+            let (substeps, levels) = (effort.substeps, effort.levels.len());
+            let depth = sunk(Bed { effort, ..bed.clone() });
+            let case = format!("{stiffness} N/m, {substeps} substeps, {levels} levels: {depth} for {expected} m");
+            println!("{case}");
+            failures.extend(((depth / expected - 1.0).abs() > 0.1).then_some(case));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn a_level_that_the_cloth_has_not_or_of_no_iterations_changes_nothing() {
+    let after = |levels: Vec<LevelPass>| {
+        let mut bed = hung(ClothGrid::new(1.0, 1.0, 20, 20).lying().into());
+        bed.effort = Effort::fixed(2, levels);
+        bed.run(0.5);
+        bed.particles
+    };
+    let pass = |stride, iterations| LevelPass { stride, iterations };
+    let without = after(Vec::new());
+    for levels in [vec![pass(4, 0)], vec![pass(5, 8), pass(0, 8), pass(u32::MAX, 8)]] {
+        assert_eq!(after(levels.clone()), without, "{levels:?}");
+    }
+    assert_ne!(after(vec![pass(4, 1)]), without);
+    assert_eq!(after(vec![pass(4, 2), pass(4, 5)]), after(vec![pass(4, 2)]), "the first of a stride counts");
+}

@@ -1,0 +1,196 @@
+//! The default solver: threads as a whole, and no more effort than is needed.
+
+use bevy::{
+    math::{Isometry3d, Vec3A, primitives::InfinitePlane3d},
+    prelude::*,
+};
+use bevy_drape::{
+    prelude::{ClothGrid, Fabric},
+    solver::{ColliderShape, Effort, Method, Obstacle, SpringKind, measure},
+};
+
+use crate::bench_bed::{ALL, Bed, GRAVITY, STABLE, bare};
+
+const FRAME: f32 = 1.0 / 60.0;
+
+/// A fabric of which only one kind of springs is stiff, in N/m, and which soon comes to rest.
+fn only(kind: SpringKind, stiffness: f32) -> Fabric {
+    let of = |other| if other == kind { stiffness } else { 0.0 };
+    Fabric {
+        structural_stiffness: of(SpringKind::Structural),
+        shear_stiffness: of(SpringKind::Shear),
+        bend_stiffness: of(SpringKind::Bend),
+        ..Fabric::default()
+    }
+}
+
+/// Two threads side by side that hang from their first particles, along the columns or along the rows of a grid, and
+/// the particles of each from the top down.
+fn threads(count: u32, are_columns: bool, fabric: Fabric) -> (Bed, [Vec<u32>; 2]) {
+    let (columns, rows) = if are_columns { (2, count) } else { (count, 2) };
+    let (width, height) = if are_columns { (0.05, 1.0) } else { (1.0, 0.05) };
+    let grid = ClothGrid::new(width, height, columns, rows);
+    let threads = [0, 1].map(|side| -> Vec<u32> {
+        (0..count).map(|i| if are_columns { grid.vertex(side, i) } else { grid.vertex(i, side) }).collect()
+    });
+    let mut bed = Bed::new(grid, bare(fabric)).pinned(threads.iter().map(|thread| thread[0]));
+    bed.gravity = GRAVITY * if are_columns { Vec3A::NEG_Y } else { Vec3A::X };
+    bed.material.damping = 6.0;
+    (bed, threads)
+}
+
+/// The largest error of a spring's stretch, as a share of what Hooke's law says, and above what rounding explains.
+fn error_of_hooke(bed: &Bed, threads: &[Vec<u32>; 2], stiffness: f32) -> f32 {
+    let mut largest = 0.0_f32;
+    for thread in threads {
+        let mut weight = 0.0;
+        for ends in thread.windows(2).rev() {
+            let [above, below] = [ends[0], ends[1]].map(|i| i as usize);
+            weight += GRAVITY / bed.particles.inverse_mass[below];
+            let length = bed.particles.position[above].distance(bed.particles.position[below]);
+            let stretch = length - bed.topology.rest[above].distance(bed.topology.rest[below]);
+            let expected = weight / stiffness;
+            largest = largest.max(((stretch - expected).abs() - 1e-6) / expected);
+        }
+    }
+    largest
+}
+
+#[test]
+fn each_spring_of_a_hanging_thread_is_stretched_by_the_weight_below() {
+    const STIFFNESS: f32 = 20.0;
+    let mut failures = Vec::new();
+    for (count, are_columns) in [(10, true), (10, false), (40, true), (40, false)] {
+        for substeps in [1, 3, 8] {
+            let (bed, threads) = threads(count, are_columns, only(SpringKind::Structural, STIFFNESS));
+            let mut bed = bed.with_substeps(substeps);
+            bed.run(8.0);
+            let error = error_of_hooke(&bed, &threads, STIFFNESS);
+            let case = format!("{count} particles, columns {are_columns}, {substeps} substeps: off by {error}");
+            println!("{case}, {} m/s", bed.fastest());
+            failures.extend((error > 0.003).then_some(case));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn a_weight_on_a_spring_of_any_kind_stretches_it_by_hookes_law() {
+    const STIFFNESS: f32 = 20.0;
+    for (method, kind) in ALL.into_iter().flat_map(|method| SpringKind::ALL.map(|kind| (method, kind))) {
+        // All but the last of three rows are fixed: each of its particles hangs on what is above it.
+        let columns = 9;
+        let grid = ClothGrid::new(0.8, 0.2, columns, 3);
+        let bed = Bed::new(grid, bare(only(kind, STIFFNESS))).pinned(0..2 * columns).with_substeps(8);
+        let mut bed = Bed { method, ..bed };
+        bed.material.damping = 6.0;
+        bed.run(8.0);
+        // The outermost have a diagonal to one side only.
+        for column in 1..columns - 1 {
+            let particle = grid.vertex(column, 2) as usize;
+            let springs: Vec<_> = bed
+                .topology
+                .springs_of(kind)
+                .filter(|spring| [spring.a, spring.b].contains(&(particle as u32)))
+                .filter(|spring| spring.a.min(spring.b) < 2 * columns)
+                .collect();
+            let place = bed.particles.position[particle];
+            let lifted: Vec3A = springs
+                .iter()
+                .map(|spring| {
+                    let other = if spring.a as usize == particle { spring.b } else { spring.a };
+                    let up = bed.particles.position[other as usize] - place;
+                    up.normalize() * (up.length() - spring.rest) * STIFFNESS
+                })
+                .sum();
+            let weight = GRAVITY / bed.particles.inverse_mass[particle];
+            assert_eq!(springs.len(), if kind == SpringKind::Shear { 2 } else { 1 });
+            let error = lifted.distance(Vec3A::Y * weight) / weight;
+            assert!(error < 0.005, "{method:?}, {kind:?}, column {column}: {lifted} for {weight} N");
+        }
+    }
+}
+
+/// A square metre of `n` x `n` particles that hangs by two corners, with all that a game gives it but air.
+fn hung(n: u32) -> Bed {
+    let corners = [0, n - 1];
+    let mut bed = Bed::lying(n, Fabric::default().material().unwrap()).pinned(corners).tethered(&corners);
+    bed.fluid_density = 0.0;
+    bed
+}
+
+fn largest_strain(bed: &Bed) -> f32 {
+    measure::strain(&bed.particles, &bed.topology).largest
+}
+
+#[test]
+fn the_effort_to_hold_a_strain_holds_it() {
+    let mut failures = Vec::new();
+    for (n, max_strain, is_tethered) in [(32, 0.01, true), (32, 0.01, false), (64, 0.01, true), (32, 0.005, true)] {
+        let mut bed = hung(n);
+        bed.effort = Effort::to_hold(max_strain, &bed.topology);
+        bed.tethers = bed.tethers.filter(|_| is_tethered);
+        bed.run(3.0);
+        let (strain, substeps) = (largest_strain(&bed), bed.effort.substeps);
+        let case = format!("{n} x {n}, tethers {is_tethered}, {substeps} substeps: {strain} for {max_strain}");
+        println!("{case}");
+        failures.extend((strain > max_strain).then_some(case));
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn a_hung_cloth_comes_to_rest() {
+    let mut failures = Vec::new();
+    for (method, n) in STABLE.into_iter().flat_map(|method| [(method, 32), (method, 64)]) {
+        let mut bed = hung(n).as_in_a_game(method);
+        bed.material.damping = 1.0;
+        bed.run(15.0);
+        // One moment may be calm by chance.
+        let mut fastest = 0.0_f32;
+        for _ in 0..60 {
+            bed.step(FRAME);
+            fastest = fastest.max(bed.fastest());
+        }
+        let case = format!("{method:?}, {n} x {n}, {} substeps: still {fastest} m/s", bed.effort.substeps);
+        println!("{case}");
+        failures.extend((fastest > 0.02).then_some(case));
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn less_strain_takes_no_fewer_substeps_and_a_finer_mesh_neither() {
+    let substeps = |n, max_strain| Effort::to_hold(max_strain, &hung(n).topology).substeps;
+    let by_strain = [0.1, 0.02, 0.01, 0.005, 0.001, 1e-6].map(|max_strain| substeps(32, max_strain));
+    assert!(by_strain.is_sorted() && by_strain[0] == 1 && by_strain[4] > 2 * by_strain[2], "{by_strain:?}");
+    let by_size = [2, 16, 64, 128].map(|n| substeps(n, 0.005));
+    assert!(by_size.is_sorted() && by_size[3] > by_size[1], "{by_size:?}");
+}
+
+#[test]
+fn more_substeps_are_taken_only_near_an_obstacle() {
+    let ground = |height: f32| {
+        let pose = Isometry3d::from_translation(Vec3::Y * height);
+        let shape = ColliderShape::HalfSpace(InfinitePlane3d::default());
+        vec![Obstacle { shape, start: pose, end: pose, friction: 1.0 }]
+    };
+    let mut bed = Bed::lying(16, Fabric::default().material().unwrap());
+    bed.effort = Effort::to_hold(0.1, &bed.topology);
+    bed.obstacles = ground(-3.0);
+    assert_eq!(bed.step(FRAME).substeps, 1);
+    let mut last_before_contact = 0;
+    for _ in 0..120 {
+        let report = bed.step(FRAME);
+        if report.contacts > 0 {
+            assert_eq!(report.substeps, 8);
+            break;
+        }
+        last_before_contact = report.substeps;
+    }
+    assert_eq!(last_before_contact, 8, "they are more before it touches");
+    bed.effort = Effort::fixed(2, bed.effort.levels);
+    assert_eq!(bed.step(FRAME).substeps, 2, "by hand they are as many everywhere");
+    bed.method = Method::Xpbd;
+    assert_eq!(bed.step(FRAME).substeps, 2);
+}
