@@ -24,7 +24,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
         let pole = studio.spawn_rod(&mut commands, foot, foot + Vec3::Y * 2.4, 0.025);
         commands.spawn((
             studio.cloth(ClothGrid::new(1.4, 0.9, 42, 27), color),
-            Cloth { substeps: 12, ..default() },
+            Cloth { substeps: Some(12), ..default() },
             Fabric { density: 0.12, bend_stiffness: 3.0, lift: 0.8, ..default() },
             // Pinned to the pole, the flag follows wherever that goes.
             Pins::edge(ClothEdge::Left).to_entity(pole),

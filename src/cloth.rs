@@ -111,7 +111,7 @@ impl Cloth {
         };
         if let Some(levels) = &self.levels {
             effort.levels.clone_from(levels);
-            effort.contact_levels.clone_from(levels);
+            effort.careful_levels.clone_from(levels);
         }
         effort
     }

@@ -83,7 +83,7 @@ pub mod prelude {
         grid::ClothGrid,
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
-        solver::ColliderShape,
+        solver::{ColliderShape, LevelPass},
         state::ClothState,
         wind::{Wind, WindShape},
     };

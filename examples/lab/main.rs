@@ -147,7 +147,7 @@ impl Options {
         };
         if let Levels::Set(levels) = &self.levels {
             effort.levels.clone_from(levels);
-            effort.contact_levels.clone_from(levels);
+            effort.careful_levels.clone_from(levels);
         }
         effort
     }

@@ -53,7 +53,7 @@ pub(super) fn advise(situation: &Situation) -> Option<Advice> {
         ClothSolver::Explicit if situation.stiffness_scale < 1.0 => {
             Some(Advice { brief: "Softer than it should be", full: raise_limit(situation) })
         }
-        ClothSolver::Xpbd if situation.strain > VISIBLE && situation.overload > EXCESS => {
+        ClothSolver::Strands | ClothSolver::Xpbd if situation.strain > VISIBLE && situation.overload > EXCESS => {
             Some(Advice { brief: "Stretches too much", full: raise_substeps(situation) })
         }
         _ => None,
@@ -66,7 +66,7 @@ fn raise_limit(situation: &Situation) -> String {
     let raise = if needed <= 10_000 { format!("Raise the most substeps to {needed}, lower") } else { "Lower".into() };
     format!(
         "{max_substeps} substeps carry only {share} % of the stiffness and damping. {raise} both to that share, or use \
-         XPBD."
+         strands."
     )
 }
 
@@ -210,7 +210,7 @@ mod tests {
     fn the_explicit_solver_asks_for_what_it_needs() {
         let soft = Situation { solver: ClothSolver::Explicit, stiffness_scale: 0.3817, needed: 829, ..GOOD };
         let text = full(&soft);
-        assert!(text.contains("38.1 %") && text.contains("to 829") && text.contains("XPBD"), "{text}");
+        assert!(text.contains("38.1 %") && text.contains("to 829") && text.contains("strands"), "{text}");
         let text = full(&Situation { needed: 20_000, ..soft });
         assert!(!text.contains("20000"), "more than it may have: {text}");
         assert_eq!(advise(&Situation { solver: ClothSolver::Xpbd, ..soft }), None);

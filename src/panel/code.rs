@@ -41,6 +41,9 @@ fn literal(value: &dyn PartialReflect) -> String {
     match value.reflect_ref() {
         ReflectRef::Enum(value) => variant(value),
         ReflectRef::Struct(value) => format!("{} {{ {} }}", value.reflect_short_type_path(), named(value)),
+        ReflectRef::List(value) => {
+            format!("vec![{}]", value.iter().map(literal).collect::<Vec<_>>().join(", "))
+        }
         // Whole numbers and switches.
         _ => format!("{value:?}"),
     }

@@ -32,7 +32,9 @@ where
         if !same(new, old)
             && let Some(field) = component.field_at_mut(i)
         {
-            is_changed |= field.try_apply(new).is_ok();
+            // Not applied: that would merge lists, and never shorten one.
+            let new = new.reflect_clone().ok().zip(field.try_as_reflect_mut());
+            is_changed |= new.is_some_and(|(new, field)| field.set(new).is_ok());
         }
     }
     is_changed

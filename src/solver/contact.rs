@@ -10,7 +10,7 @@ use core::ops::Range;
 
 use bevy::math::{Isometry3d, Quat, Vec3A};
 
-use super::{Lanes, Material, Particles};
+use super::{Lanes, Material, Particles, StepContext};
 
 pub mod shape;
 
@@ -47,23 +47,24 @@ impl Obstacle {
 }
 
 /// Whether an obstacle is so near that the cloth may touch it within a step of `dt` seconds.
-pub(super) fn is_any_near(particles: &Particles, obstacles: &[Obstacle], thickness: f32, dt: f32) -> bool {
-    if obstacles.is_empty() {
+pub(super) fn is_any_near(particles: &Particles, ctx: &StepContext, dt: f32) -> bool {
+    if ctx.obstacles.is_empty() {
         return false;
     }
-    let (low, high) = particles
-        .position
-        .iter()
-        .fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+    let ends = ctx.anchors.iter().map(|anchor| anchor.end).chain(ctx.grabs.iter().map(|grab| grab.end));
+    let places = particles.position.iter().copied().chain(ends);
+    let (low, high) = places.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let fastest = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
     let (centre, radius) = ((low + high) / 2.0, low.distance(high) / 2.0);
     // A step ahead, and once more for what it gains in speed.
-    let reach = radius + thickness + 2.0 * fastest * dt + GAINED;
-    obstacles.iter().any(|obstacle| {
-        let way = obstacle.start.translation.distance(obstacle.end.translation);
-        [obstacle.start, obstacle.end]
-            .iter()
-            .any(|pose| obstacle.shape.surface(pose.inverse().transform_point(centre)).distance <= reach + way)
+    let reach = radius + ctx.material.thickness + 2.0 * fastest * dt + GAINED;
+    ctx.obstacles.iter().any(|obstacle| {
+        let Obstacle { start, end, shape, .. } = obstacle;
+        let way = start.translation.distance(end.translation);
+        let is_reached =
+            |pose: &Isometry3d| shape.surface(pose.inverse().transform_point(centre)).distance <= reach + way;
+        // What turns sweeps over more than it covers at both ends.
+        start.rotation != end.rotation || is_reached(start) || is_reached(end)
     })
 }
 

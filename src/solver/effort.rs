@@ -5,23 +5,28 @@ use super::{LevelPass, Topology};
 /// Substeps and levels of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Effort {
-    /// Substeps a step, where nothing is near that the cloth could touch.
+    /// Substeps.
     pub substeps: u32,
-    /// The fewest substeps where something is near.
-    pub contact_substeps: u32,
     /// Iterations of the coarse levels. Without tethers, there are none.
     pub levels: Vec<LevelPass>,
-    /// The same where something is near.
-    pub contact_levels: Vec<LevelPass>,
+    /// Substeps where more is at stake: something is near that the cloth may touch, a hand holds it, or no tethers do.
+    pub careful_substeps: u32,
+    /// Levels of those.
+    pub careful_levels: Vec<LevelPass>,
+    /// Whether the substeps are those of a step of 1/60 s, and a longer one has more of them.
+    pub follows_time_step: bool,
 }
 
 impl Effort {
-    /// Fewer leave a cloth on something trembling.
-    const LEAST_IN_CONTACT: u32 = 8;
+    /// Fewer leave a cloth on something trembling, and stretch it in the hand.
+    const LEAST_WITH_CARE: f32 = 8.0;
 
-    /// What a cloth of 64 x 64 particles, 1 m wide and hung by two corners, is stretched in one substep of 1/60 s with
-    /// levels, no unit.
-    const STRAIN_OF_ONE: f32 = 0.012;
+    /// The same for each particle along a side.
+    const LEAST_OF_SIDE: f32 = 1.0 / 6.0;
+
+    /// What a cloth of 64 x 64 particles, 1 m wide and hung by two corners, is stretched while it swings freely in one
+    /// substep of 1/60 s with levels, no unit. Calm cloth is stretched half as much.
+    const STRAIN_OF_ONE: f32 = 0.03;
 
     /// The same without rows and columns, for all but one in a hundred springs.
     const LOOSE_STRAIN_OF_ONE: f32 = 0.04;
@@ -36,24 +41,50 @@ impl Effort {
         let is_woven = topology.lattice.is_some();
         let of_64 = if is_woven { Self::STRAIN_OF_ONE } else { Self::LOOSE_STRAIN_OF_ONE };
         let of_one = of_64 * bevy::math::ops::powf(side(topology) / 64.0, 0.9);
-        let substeps = (of_one / max_strain).ceil().clamp(1.0, 64.0) as u32;
-        let contact_substeps = substeps.max(Self::LEAST_IN_CONTACT);
-        let levels = Self::levels_for(substeps, topology);
-        Self { substeps, contact_substeps, levels, contact_levels: Self::levels_for(contact_substeps, topology) }
+        let substeps = (of_one / max_strain).ceil().clamp(2.0, 64.0) as u32;
+        let least = Self::LEAST_WITH_CARE.max(Self::LEAST_OF_SIDE * side(topology)).ceil() as u32;
+        let careful_substeps = substeps.max(least);
+        Self {
+            substeps,
+            levels: Self::levels_down_to(substeps, 1, topology),
+            careful_substeps,
+            careful_levels: Self::levels_for(careful_substeps, topology),
+            follows_time_step: true,
+        }
     }
 
-    /// So many substeps, whatever is near.
+    /// So many substeps in every step.
     pub fn fixed(substeps: u32, levels: Vec<LevelPass>) -> Self {
-        Self { substeps, contact_substeps: substeps, contact_levels: levels.clone(), levels }
+        let careful_levels = levels.clone();
+        Self { substeps, levels, careful_substeps: substeps, careful_levels, follows_time_step: false }
+    }
+
+    /// Substeps and levels of a step of `dt` seconds.
+    pub(super) fn of_step(&self, with_care: bool, dt: f32) -> (u32, &[LevelPass]) {
+        let (substeps, levels) = match with_care {
+            true => (self.careful_substeps, &self.careful_levels),
+            false => (self.substeps, &self.levels),
+        };
+        let factor = if self.follows_time_step { dt * 60.0 } else { 1.0 };
+        // A step of 1/60 s isn't longer than that by a rounding.
+        let substeps = (substeps as f32 * factor - 0.01).ceil().max(1.0) as u32;
+        (substeps, levels)
     }
 
     /// The levels that go with so many substeps: the fewer there are, the farther a pull has to travel in one. Where
     /// substeps are enough by themselves, levels would only stiffen the cloth.
     pub fn levels_for(substeps: u32, topology: &Topology) -> Vec<LevelPass> {
+        Self::levels_down_to(substeps, 0, topology)
+    }
+
+    /// The same, with the finest `least` levels in any case.
+    fn levels_down_to(substeps: u32, least: usize, topology: &Topology) -> Vec<LevelPass> {
         let widest = side(topology) / (2.5 * substeps as f32);
         let iterations = if substeps < 4 { 8 } else { 4 };
-        let used = topology.levels.iter().filter(|level| level.stride as f32 <= widest);
-        used.map(|level| LevelPass { stride: level.stride, iterations }).collect()
+        let count = topology.levels.len();
+        let levels = topology.levels.iter().enumerate();
+        let used = levels.filter(|&(i, level)| level.stride as f32 <= widest || i + least >= count);
+        used.map(|(_, level)| LevelPass { stride: level.stride, iterations }).collect()
     }
 }
 

@@ -41,28 +41,25 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     let instructions = scratch.instructions;
     scratch.lanes.load(particles, topology.order(), instructions);
     grab::take_up(&mut scratch.lanes, ctx.grabs);
-    let is_near = contact::is_any_near(particles, ctx.obstacles, ctx.material.thickness, dt);
-    let (most, needed_substeps, stiffness_scale) = match ctx.method {
-        Method::Strands | Method::Xpbd => {
-            let wanted = if is_near { ctx.effort.contact_substeps } else { ctx.effort.substeps };
-            (u32::MAX, wanted.max(1), 1.0)
-        }
+    let is_near = contact::is_any_near(particles, ctx, dt);
+    let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
+    let with_care = is_near || !is_tethered || !ctx.grabs.is_empty();
+    let (wanted, levels) = ctx.effort.of_step(with_care, dt);
+    let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
+        Method::Strands => (u32::MAX, wanted, 1.0, levels),
+        Method::Xpbd => (u32::MAX, wanted, 1.0, &[][..]),
         Method::Explicit => {
             let (needed, scale) =
                 explicit::stable_substeps(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
-            (ctx.max_substeps.max(1), needed, scale)
+            (ctx.max_substeps.max(1), needed, scale, &[][..])
         }
-    };
-    let levels = match ctx.method {
-        Method::Strands if is_near => &ctx.effort.contact_levels,
-        Method::Strands => &ctx.effort.levels,
-        Method::Xpbd | Method::Explicit => &Vec::new(),
     };
     let substeps = needed_substeps.min(most);
     let is_pushed = wind::feels_air(ctx) || particles.force.iter().any(|&force| force != Vec3A::ZERO);
     let last = Last::between(ctx.anchors, topology.order());
     let substep = Substep { topology, ctx, h: dt / substeps as f32, stiffness_scale, is_pushed, last, levels };
-    let limit = SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most: ctx.max_velocity };
+    let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
+    let limit = SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most };
     let air_interval = ((1.0 / (AIR_RATE * substep.h)) as u32).max(1);
     let mut contacts = 0;
 
@@ -80,11 +77,16 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         substep.move_freely(scratch);
         anchor::advance(&mut scratch.lanes, ctx.anchors, span.end, dt);
         match ctx.method {
-            Method::Strands => substep.solve_strands(scratch),
-            Method::Xpbd => substep.solve_springs(scratch),
-            Method::Explicit => {}
+            Method::Strands => {
+                grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
+                substep.solve_strands(scratch);
+            }
+            Method::Xpbd => {
+                substep.solve_springs(scratch);
+                grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
+            }
+            Method::Explicit => grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h),
         }
-        grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
         if ctx.method == Method::Xpbd {
             // After the hands: where both can't hold, pins are stronger.
             substep.solve_tethers(scratch);

@@ -33,4 +33,5 @@ mod recovery;
 mod reflection;
 mod removal;
 mod schedules;
+mod stretch;
 mod winds;

@@ -5,12 +5,15 @@ use bevy::{
     prelude::{Capsule3d, Cuboid, Cylinder, Quat, Sphere, Vec3, default},
 };
 use bevy_drape::{
-    prelude::Fabric,
+    prelude::{ClothGrip, Fabric},
     solver::{ColliderShape, Material, Method, Obstacle},
 };
 use proptest::prelude::*;
 
-use crate::bench_bed::{Bed, GRAVITY, STABLE, bare};
+use crate::{
+    bench_bed::{Bed, GRAVITY, STABLE, bare},
+    grabs::hand,
+};
 
 fn still(shape: ColliderShape, place: Vec3) -> Obstacle {
     let pose = Isometry3d::from_translation(place);
@@ -175,6 +178,25 @@ fn a_cloth_that_starts_inside_comes_out_without_being_thrown() {
         bed.run(1.0);
         assert!(depth(&bed) < 1e-5);
         assert!(bed.fastest() < 5.0, "{method:?}: {} m/s", bed.fastest());
+    }
+}
+
+#[test]
+fn a_hand_takes_no_resting_cloth_through_a_board_in_one_step() {
+    for method in STABLE {
+        let mut bed = Bed { gravity: Vec3A::ZERO, ..sheet(method, 16, cotton(0.5, 0.0)) };
+        bed.obstacles = vec![still(ColliderShape::Cuboid(Cuboid::new(4.0, 0.02, 4.0)), Vec3::NEG_Y * 0.05)];
+        let grip = ClothGrip { max_force: 1000.0, ..default() };
+        bed.grabs = vec![hand(&bed, 200, [0.4, 0.3, 0.3], grip)];
+        // As fast as a pointer leads it.
+        bed.grabs[0].end += Vec3A::NEG_Y * (grip.max_speed / 60.0);
+        bed.step(1.0 / 60.0);
+        let lowest = bed.particles.position.iter().map(|p| p.y).fold(f32::MAX, f32::min);
+        assert!(lowest > -0.0401, "{method:?}: {lowest} m");
+        bed.grabs[0].start = bed.grabs[0].end;
+        bed.run(0.5);
+        let lowest = bed.particles.position.iter().map(|p| p.y).fold(f32::MAX, f32::min);
+        assert!(lowest > -0.0401, "{method:?}: {lowest} m after a while");
     }
 }
 

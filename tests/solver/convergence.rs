@@ -1,10 +1,7 @@
 //! Three solvers, one set of constants: all come to the same motion as their steps shrink.
 
 use bevy::math::ops;
-use bevy_drape::{
-    prelude::Fabric,
-    solver::{Effort, LevelPass, Method, Topology},
-};
+use bevy_drape::{prelude::Fabric, solver::Method};
 
 use crate::bench_bed::{Bed, STABLE, bare, rms};
 
@@ -19,52 +16,41 @@ fn held(method: Method) -> Bed {
     bed
 }
 
-/// 0.5 s after it was let go, with so many substeps and levels.
-fn swung(method: Method, effort: Effort) -> Bed {
-    let mut bed = Bed { effort, ..held(method) };
+/// 0.5 s after it was let go, in so many substeps.
+fn swung(method: Method, substeps: u32) -> Bed {
+    let mut bed = held(method).with_substeps(substeps);
     bed.run(0.5);
     bed
 }
 
 /// Distances from the explicit solver's motion with so many substeps, m.
-fn errors<const N: usize>(
-    method: Method,
-    substeps: [u32; N],
-    levels: fn(u32, &Topology) -> Vec<LevelPass>,
-) -> [f32; N] {
-    let truth = swung(Method::Explicit, Effort::fixed(1, Vec::new()));
-    let errors = substeps.map(|substeps| {
-        let effort = Effort::fixed(substeps, levels(substeps, &truth.topology));
-        rms(&swung(method, effort).particles, &truth.particles)
-    });
+fn errors<const N: usize>(method: Method, substeps: [u32; N]) -> [f32; N] {
+    let truth = swung(Method::Explicit, 1);
+    let errors = substeps.map(|substeps| rms(&swung(method, substeps).particles, &truth.particles));
     println!("{method:?} at 0.5 s with {substeps:?} substeps: RMS {errors:?} m");
     errors
-}
-
-fn none(_: u32, _: &Topology) -> Vec<LevelPass> {
-    Vec::new()
 }
 
 #[test]
 fn xpbd_and_strands_come_to_the_motion_of_the_explicit_solver_as_their_steps_shrink() {
     for method in STABLE {
         // Finer steps than the last gain nothing in f32: what they move by is lost in rounding.
-        let errors = errors(method, [8, 32, 128], none);
+        let errors = errors(method, [8, 32, 128]);
         assert!(errors.array_windows().all(|[coarse, fine]| *coarse > 3.0 * fine), "{method:?}: {errors:?}");
         assert!(errors[2] < 0.006, "{method:?}: {errors:?}");
     }
 }
 
 #[test]
-fn with_the_levels_that_go_with_their_substeps_strands_come_closer_with_each_more() {
-    let errors = errors(Method::Strands, [1, 2, 4, 8, 16, 32], Effort::levels_for);
+fn strands_come_closer_with_every_more_substep() {
+    let errors = errors(Method::Strands, [1, 2, 4, 8, 16, 32]);
     assert!(errors.array_windows().all(|[coarse, fine]| coarse > fine), "{errors:?}");
 }
 
 #[test]
 fn the_explicit_solver_is_its_own_limit() {
     // Half of its own step: the answer moves by less than what the others are measured against.
-    let coarse = swung(Method::Explicit, Effort::fixed(1, Vec::new()));
+    let coarse = swung(Method::Explicit, 1);
     let own_substeps = held(Method::Explicit).step(1.0 / 60.0).substeps;
     let steps = 2 * own_substeps;
     let mut fine = held(Method::Explicit);

@@ -92,7 +92,7 @@ fn a_cloth_crushed_to_a_point_opens_again() {
     }
 }
 
-/// Strands that hang are stretched by less than 2 % two seconds after what `harm` did to them.
+/// Strands that hang are stretched by less than 3 % two seconds after what `harm` did to them.
 #[track_caller]
 fn assert_mends(fabric: Fabric, dt: f32, harm: impl FnOnce(&mut Bed)) {
     let mut bed = hung(Method::Strands, 32, fabric);
@@ -107,7 +107,7 @@ fn assert_mends(fabric: Fabric, dt: f32, harm: impl FnOnce(&mut Bed)) {
     }
     let strain = measure::strain(&bed.particles, &bed.topology).largest;
     println!("{} substeps leave a strain of {strain}", bed.effort.substeps);
-    assert!(strain < 0.02, "a strain of {strain} is left");
+    assert!(strain < 0.03, "a strain of {strain} is left");
 }
 
 const FRAME: f32 = 1.0 / 60.0;

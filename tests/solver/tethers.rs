@@ -128,6 +128,6 @@ fn tethers_keep_a_soft_cloth_within_its_length() {
         }
         farthest
     });
-    // The second of two tethers can push a particle a little past the first.
-    assert!(reaches.iter().all(|&reach| reach <= 1.05), "{STABLE:?} are stretched to {reaches:?}");
+    // The second of two tethers can push a particle a little past the first, and strands come after both.
+    assert!(reaches.iter().all(|&reach| reach <= 1.06), "{STABLE:?} are stretched to {reaches:?}");
 }

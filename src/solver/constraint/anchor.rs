@@ -25,8 +25,7 @@ mod tests {
     use crate::solver::lanes::Order;
     #[test]
     fn a_pin_goes_straight_and_steadily_over_the_step() {
-        let mut lanes = Lanes::default();
-        lanes.order = Order::plain(1);
+        let mut lanes = Lanes { order: Order::plain(1), ..Lanes::default() };
         lanes.position.resize(1);
         lanes.velocity.resize(1);
         let anchors = [Anchor { particle: 0, start: Vec3A::X, end: Vec3A::X * 3.0 }];

@@ -149,7 +149,7 @@ impl Nodes {
                 }
             }
         }
-        self.way.clone_from(&self.position);
+        self.way.0.clone_from(&self.position.0);
     }
 
     /// Moves the nodes along with those of a coarser level.

@@ -152,7 +152,7 @@ impl Pack<'_> {
             spring.along.store(&mut row.along);
             (row.right, row.lower) = ((right * inverse_pivot).into(), lower.into());
             if CLOSED {
-                border = border * lower;
+                border *= lower;
                 if j == 0 {
                     border -= first.inverse_mass * closing.along.dot(spring.along);
                 }
