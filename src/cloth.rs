@@ -78,7 +78,7 @@ impl Default for Cloth {
     fn default() -> Self {
         Self {
             solver: ClothSolver::default(),
-            max_strain: 0.005,
+            max_strain: 0.01,
             substeps: None,
             levels: None,
             max_substeps: 512,

@@ -24,31 +24,40 @@ impl Effort {
     /// The same for each particle along a side.
     const LEAST_OF_SIDE: f32 = 1.0 / 6.0;
 
-    /// What a cloth of 64 x 64 particles, 1 m wide and hung by two corners, is stretched while it swings freely in one
-    /// substep of 1/60 s with levels, no unit. Calm cloth is stretched half as much.
-    const STRAIN_OF_ONE: f32 = 0.03;
+    /// What a cloth of 64 x 64 particles, 1 m wide and hung by two corners, is stretched while it swings in one substep
+    /// of 1/60 s, no unit.
+    const STRAIN_OF_ONE: f32 = 0.1;
 
-    /// The same without rows and columns, for all but one in a hundred springs.
-    const LOOSE_STRAIN_OF_ONE: f32 = 0.04;
+    /// The same with levels.
+    const STRAIN_WITH_LEVELS: f32 = 0.03;
+
+    /// The same with levels, without rows and columns, for all but one in a hundred springs.
+    const LOOSE_STRAIN: f32 = 0.04;
+
+    /// Where more substeps than this would be needed, levels help.
+    const MOST_WITHOUT_LEVELS: f32 = 16.0;
 
     /// Substeps that hold the largest strain of [`Method::Strands`](super::Method::Strands) at about `max_strain` (no
-    /// unit), with levels, at 60 steps a second.
+    /// unit) at 60 steps a second, with levels where it takes them.
     ///
-    /// Measured with `lab hang` over grids of 16 to 256 particles a side: with levels, strain falls with the number of
-    /// substeps, and grows with the power 0.9 of the particles along a side. A cloth that is stretched more by its own
-    /// weight stays so. On a mesh without rows and columns a few springs are stretched several times as much.
+    /// Measured with `lab hang` over grids of 16 to 256 particles a side: strain falls with the number of substeps, and
+    /// grows with the power 1.2 of the particles along a side, with levels 0.9. Levels never let a hung cloth come quite
+    /// to rest, so they are used where substeps alone would be too many. A cloth that is stretched more by its own weight
+    /// stays so. On a mesh without rows and columns a few springs are stretched several times as much.
     pub fn to_hold(max_strain: f32, topology: &Topology) -> Self {
+        let grown = |of_64: f32, power: f32| of_64 * bevy::math::ops::powf(side(topology) / 64.0, power) / max_strain;
         let is_woven = topology.lattice.is_some();
-        let of_64 = if is_woven { Self::STRAIN_OF_ONE } else { Self::LOOSE_STRAIN_OF_ONE };
-        let of_one = of_64 * bevy::math::ops::powf(side(topology) / 64.0, 0.9);
-        let substeps = (of_one / max_strain).ceil().clamp(2.0, 64.0) as u32;
+        let without = if is_woven { grown(Self::STRAIN_OF_ONE, 1.2) } else { f32::INFINITY };
+        let with_levels = without > Self::MOST_WITHOUT_LEVELS;
+        let of_64 = if is_woven { Self::STRAIN_WITH_LEVELS } else { Self::LOOSE_STRAIN };
+        let needed = if with_levels { grown(of_64, 0.9) } else { without };
+        let substeps = needed.ceil().clamp(2.0, 64.0) as u32;
         let least = Self::LEAST_WITH_CARE.max(Self::LEAST_OF_SIDE * side(topology)).ceil() as u32;
-        let careful_substeps = substeps.max(least);
         Self {
             substeps,
-            levels: Self::levels_down_to(substeps, 1, topology),
-            careful_substeps,
-            careful_levels: Self::levels_for(careful_substeps, topology),
+            levels: if with_levels { Self::levels_down_to(substeps, 1, topology) } else { Vec::new() },
+            careful_substeps: substeps.max(least),
+            careful_levels: Vec::new(),
             follows_time_step: true,
         }
     }

@@ -93,10 +93,10 @@ impl Bed {
     }
 
     /// A method with the effort that a game makes where it says nothing of it.
-    pub fn as_in_a_game(mut self, method: Method) -> Self {
+    pub fn like_a_game(mut self, method: Method) -> Self {
         self.method = method;
         self.effort = match method {
-            Method::Strands => Effort::to_hold(0.005, &self.topology),
+            Method::Strands => Effort::to_hold(0.01, &self.topology),
             Method::Xpbd | Method::Explicit => Effort::fixed(8, Vec::new()),
         };
         self
@@ -128,7 +128,7 @@ impl Bed {
             grabs: &self.grabs,
             max_velocity: self.max_velocity,
             tethers: self.tethers.as_ref(),
-            tether_slack: 0.0,
+            tether_slack: 0.005,
             obstacles: &self.obstacles,
             fluid_density: self.fluid_density,
             winds: &self.winds,

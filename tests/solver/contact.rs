@@ -35,7 +35,7 @@ fn depth(bed: &Bed) -> f32 {
 
 /// A square metre as a game would run it.
 fn sheet(method: Method, n: u32, material: Material) -> Bed {
-    Bed::lying(n, material).as_in_a_game(method)
+    Bed::lying(n, material).like_a_game(method)
 }
 
 /// A cloth that lies on a slope of `slope` rad, and how far it has come after two seconds.

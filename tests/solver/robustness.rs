@@ -3,7 +3,7 @@
 use bevy::{math::Vec3A, prelude::*};
 use bevy_drape::{
     prelude::{ClothGrid, Fabric},
-    solver::{Effort, LevelPass, Method, SpringKind, constraint::spring::strain, measure},
+    solver::{Effort, LevelPass, Method, SpringKind, constraint::spring::strain},
 };
 use proptest::prelude::*;
 
@@ -53,7 +53,7 @@ proptest! {
 /// A square metre that hangs by two corners, as a game would run it.
 fn hung(method: Method, n: u32, fabric: Fabric) -> Bed {
     let corners = [0, n - 1];
-    Bed::lying(n, fabric.material().unwrap()).pinned(corners).tethered(&corners).as_in_a_game(method)
+    Bed::lying(n, fabric.material().unwrap()).pinned(corners).tethered(&corners).like_a_game(method)
 }
 
 /// Takes the second pin by `way` within the next step.
@@ -78,7 +78,7 @@ fn a_corner_jerked_by_a_metre_does_not_explode_the_cloth() {
 fn a_cloth_crushed_to_a_point_opens_again() {
     for method in STABLE {
         let bed = Bed::lying(12, Fabric::default().material().unwrap()).pinned([0]);
-        let mut bed = bed.as_in_a_game(method);
+        let mut bed = bed.like_a_game(method);
         let corner = bed.particles.position[0];
         bed.particles.position.fill(corner);
         bed.particles.position.iter_mut().enumerate().for_each(|(i, p)| p.x += 1e-5 * i as f32);
@@ -92,7 +92,8 @@ fn a_cloth_crushed_to_a_point_opens_again() {
     }
 }
 
-/// Strands that hang are stretched by less than 3 % two seconds after what `harm` did to them.
+/// Strands that hang are stretched by less than 2 % two seconds after what `harm` did to them, but for one spring in a
+/// hundred: a cell that was turned inside out can stay so.
 #[track_caller]
 fn assert_mends(fabric: Fabric, dt: f32, harm: impl FnOnce(&mut Bed)) {
     let mut bed = hung(Method::Strands, 32, fabric);
@@ -105,9 +106,12 @@ fn assert_mends(fabric: Fabric, dt: f32, harm: impl FnOnce(&mut Bed)) {
         bed.step(dt);
         assert!(bed.particles.is_finite());
     }
-    let strain = measure::strain(&bed.particles, &bed.topology).largest;
+    let structural = bed.topology.springs_of(SpringKind::Structural);
+    let mut strains: Vec<f32> = structural.map(|spring| strain(&bed.particles.position, spring)).collect();
+    strains.sort_unstable_by(f32::total_cmp);
+    let strain = strains[strains.len() * 99 / 100];
     println!("{} substeps leave a strain of {strain}", bed.effort.substeps);
-    assert!(strain < 0.03, "a strain of {strain} is left");
+    assert!(strain < 0.02, "a strain of {strain} is left");
 }
 
 const FRAME: f32 = 1.0 / 60.0;

@@ -60,9 +60,9 @@ fn error_of_hooke(bed: &Bed, threads: &[Vec<u32>; 2], stiffness: f32) -> f32 {
 fn each_spring_of_a_hanging_thread_is_stretched_by_the_weight_below() {
     const STIFFNESS: f32 = 20.0;
     let mut failures = Vec::new();
-    // Of many light particles, a taut thread trembles where substeps are too few.
-    for (count, least_substeps) in [(10, 1), (40, 8)] {
-        for (are_columns, substeps) in [(true, least_substeps), (false, least_substeps), (true, 3 * least_substeps)] {
+    // As soft as that, springs give by much of their length within a substep where those are few.
+    for count in [10, 40] {
+        for (are_columns, substeps) in [(true, 8), (false, 8), (true, 24)] {
             let (bed, threads) = threads(count, are_columns, only(SpringKind::Structural, STIFFNESS));
             let mut bed = bed.with_substeps(substeps);
             bed.run(8.0);
@@ -149,7 +149,7 @@ fn the_effort_to_hold_a_strain_holds_it() {
 fn a_hung_cloth_comes_to_rest() {
     let mut failures = Vec::new();
     for (method, n) in STABLE.into_iter().flat_map(|method| [(method, 32), (method, 64)]) {
-        let mut bed = hung(n).as_in_a_game(method);
+        let mut bed = hung(n).like_a_game(method);
         bed.material.damping = 1.0;
         bed.run(15.0);
         // Taut threads near a pin tremble, by less than anyone sees.

@@ -117,7 +117,7 @@ fn a_particle_without_a_way_to_a_pin_has_no_tether() {
 fn tethers_keep_a_soft_cloth_within_its_length() {
     let reaches = STABLE.map(|method| {
         let soft = bare(Fabric { structural_stiffness: 5.0, ..Fabric::default() });
-        let mut bed = Bed::lying(16, soft).pinned([0, 15]).tethered(&[0, 15]).as_in_a_game(method);
+        let mut bed = Bed::lying(16, soft).pinned([0, 15]).tethered(&[0, 15]).like_a_game(method);
         let mut farthest = 0.0_f32;
         for _ in 0..120 {
             bed.step(1.0 / 60.0);

@@ -17,6 +17,16 @@
 //! The matrix is Gram's of the directions plus a positive diagonal: elimination needs no pivoting. Particle j moves by
 //! wj (d(j-1) mu(j-1) - dj mu(j)).
 //!
+//! The directions are those before the move. A taut spring also pulls across, as much as it turns; taken from before the
+//! move that pull overshoots, and flips light particles from side to side, as soon as w h² T/L is more than 1/3 for a
+//! tension T. So taut springs, with t = -mu > 0, pull along the direction that they have afterwards, x being new and p
+//! old places:
+//!
+//! (1 + wj (t(j-1) + tj)) xj - wj t(j-1) x(j-1) - wj tj x(j+1) = pj
+//!
+//! which is tridiagonal as well, and the same where nothing turns. (The tension takes the place of the geometric
+//! stiffness of Tournier et al., "Stable Constrained Dynamics", 2015.)
+//!
 //! A ring has one spring more, from its last particle to its first. It borders the matrix with a row and a column, which
 //! are eliminated along with the others and come first on the way back.
 
@@ -65,12 +75,15 @@ struct Spring<S: Simd> {
 pub(in crate::solver) trait Side {
     /// Whether slack springs are without effect.
     const ONLY_PULLS: bool;
+    /// Whether taut springs pull along the direction that they have after the move.
+    const TURNS: bool = !Self::ONLY_PULLS;
 }
 
 /// Springs push and pull.
 pub(in crate::solver) struct Both;
 
-/// Springs pull where they are too long, and do nothing else.
+/// Springs pull where they are too long, and do nothing else: for levels, whose nodes are heavy and far apart, so that
+/// they turn little.
 pub(in crate::solver) struct Pull;
 
 impl Side for Both {
@@ -90,12 +103,6 @@ impl Pack<'_> {
             previous: if DAMPED { Vec3x8::load(simd, &self.previous[j]) } else { position },
             inverse_mass: lane(simd, &self.inverse_mass[j]),
         }
-    }
-
-    #[inline(always)]
-    fn shift<S: Simd>(&mut self, simd: S, j: usize, way: Vec3x8<S>) {
-        let place = Vec3x8::load(simd, &self.position[j]);
-        (place + way * lane(simd, &self.inverse_mass[j])).store(&mut self.position[j]);
     }
 
     /// Solves the springs from each node to the next, and of a `CLOSED` ring the one from the last to the first. `rest`
@@ -169,30 +176,58 @@ impl Pack<'_> {
         closing
     }
 
-    /// From the last node back to the first.
+    /// From the last node back to the first, which leaves each place but for its share of the one before, and on to the
+    /// last again.
     #[inline(always)]
-    fn substitute<S: Simd, D: Side, const CLOSED: bool>(&mut self, simd: S, rows: &[Row], closing: Spring<S>) {
-        let none = f32x8::splat(simd, 0.0);
-        let (mut mu, mut lower) = (none, none);
+    fn substitute<S: Simd, D: Side, const CLOSED: bool>(&mut self, simd: S, rows: &mut [Row], closing: Spring<S>) {
+        let (none, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         let mut closing_mu = none;
         if CLOSED {
             closing_mu = pulling::<S, D>(simd, closing.right / closing.diagonal);
         }
+        // What closes a ring, and what is pressed together, pushes along the direction that it had.
         let closing_push = closing.along * closing_mu;
-        let mut pull = closing_push;
-        for j in (0..rows.len() - 1).rev() {
-            let row = &rows[j];
-            mu = lane(simd, &row.right) + lower * mu;
-            if CLOSED {
-                mu -= lane(simd, &row.border) * closing_mu;
+        let mut push_after = closing_push;
+        let (mut mu, mut lower) = (none, none);
+        // Of the node after: tension towards it, its place but for its share of this one's, and that share.
+        let (mut tension_after, mut place_after, mut share_after) = (none, closing_push, none);
+        for j in (0..rows.len()).rev() {
+            // The first node has no spring before it but the one that closes a ring.
+            let (tension, push) = if j > 0 {
+                let row = &rows[j - 1];
+                mu = lane(simd, &row.right) + lower * mu;
+                if CLOSED {
+                    mu -= lane(simd, &row.border) * closing_mu;
+                }
+                mu = pulling::<S, D>(simd, mu);
+                lower = lane(simd, &row.lower);
+                let along = Vec3x8::load(simd, &row.along);
+                if D::TURNS { (-mu.min(none), along * mu.max(none)) } else { (none, along * mu) }
+            } else {
+                (none, closing_push)
+            };
+            let w = lane(simd, &self.inverse_mass[j]);
+            let towards_after = tension_after;
+            let pulled = place_after * towards_after + push - push_after;
+            let place = Vec3x8::load(simd, &self.position[j]) + pulled * w;
+            (tension_after, push_after) = (tension, push);
+            if !D::TURNS {
+                place.store(&mut self.position[j]);
+                continue;
             }
-            mu = pulling::<S, D>(simd, mu);
-            lower = lane(simd, &row.lower);
-            let push = Vec3x8::load(simd, &row.along) * mu;
-            self.shift(simd, j + 1, push - pull);
-            pull = push;
+            let inverse = one / (w * (tension + towards_after - towards_after * share_after) + one);
+            (place_after, share_after) = (place * inverse, w * tension * inverse);
+            place_after.store(&mut self.position[j]);
+            rows[j].right = share_after.into();
         }
-        self.shift(simd, 0, closing_push - pull);
+        if !D::TURNS {
+            return;
+        }
+        for (j, row) in rows.iter().enumerate().skip(1) {
+            let before = Vec3x8::load(simd, &self.position[j - 1]);
+            let place = Vec3x8::load(simd, &self.position[j]) + before * lane(simd, &row.right);
+            place.store(&mut self.position[j]);
+        }
     }
 
     /// Solves springs from each node to the one after the next. `rest` has a length for each node, m; where it is zero,
