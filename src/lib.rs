@@ -24,7 +24,7 @@
 //! ```text
 //! mesh -> build -> particles and topology
 //!                           |
-//!   settings, pins, hands, obstacles, winds -> [ forces -> springs -> hands -> tethers -> contact ] x substeps -> state
+//!   settings, pins, hands, obstacles, winds -> [ forces -> levels -> tethers -> strands -> contact ] x substeps -> state
 //!                                                                                                                  |
 //!                                            renderer <- mesh <- normals, tangents <- interpolation <- draw <------+
 //! ```
