@@ -30,6 +30,7 @@ pub struct Bed {
     pub anchors: Vec<Anchor>,
     pub grabs: Vec<Grab>,
     pub tethers: Option<Tethers>,
+    pub tether_slack: f32,
     pub obstacles: Vec<Obstacle>,
     pub winds: Vec<WindSource>,
     pub method: Method,
@@ -59,6 +60,7 @@ impl Bed {
             anchors: Vec::new(),
             grabs: Vec::new(),
             tethers: None,
+            tether_slack: 0.0,
             obstacles: Vec::new(),
             winds: Vec::new(),
             method: Method::Strands,
@@ -95,6 +97,8 @@ impl Bed {
     /// A method with the effort that a game makes where it says nothing of it.
     pub fn like_a_game(mut self, method: Method) -> Self {
         self.method = method;
+        // Strands come after the tethers, and fight those that give nothing; the others keep what they were tested with.
+        self.tether_slack = if method == Method::Strands { 0.005 } else { 0.0 };
         self.effort = match method {
             Method::Strands => Effort::to_hold(0.01, &self.topology),
             Method::Xpbd | Method::Explicit => Effort::fixed(8, Vec::new()),
@@ -128,7 +132,7 @@ impl Bed {
             grabs: &self.grabs,
             max_velocity: self.max_velocity,
             tethers: self.tethers.as_ref(),
-            tether_slack: 0.005,
+            tether_slack: self.tether_slack,
             obstacles: &self.obstacles,
             fluid_density: self.fluid_density,
             winds: &self.winds,

@@ -36,7 +36,9 @@ fn xpbd_and_strands_come_to_the_motion_of_the_explicit_solver_as_their_steps_shr
     for method in STABLE {
         // Finer steps than the last gain nothing in f32: what they move by is lost in rounding.
         let errors = errors(method, [8, 32, 128]);
-        assert!(errors.array_windows().all(|[coarse, fine]| *coarse > 1.5 * fine), "{method:?}: {errors:?}");
+        // Strands are near the limit of f32 with 32 substeps already.
+        let gain = if method == Method::Strands { 1.5 } else { 3.0 };
+        assert!(errors.array_windows().all(|[coarse, fine]| *coarse > gain * fine), "{method:?}: {errors:?}");
         assert!(errors[2] < 0.006, "{method:?}: {errors:?}");
     }
 }

@@ -129,7 +129,9 @@ fn a_jerk_of_a_metre_neither_tears_nor_throws_the_cloth() {
              a strain of {left} is left"
         );
         println!("{case}");
-        let is_good = largest < 0.7 && mean < 0.03 && excess < 0.03 && speed < 20.0 && left < 0.03;
+        // A jerk can leave a cell of strands turned inside out.
+        let most_left = if method == Method::Strands { 0.03 } else { 0.01 };
+        let is_good = largest < 0.7 && mean < 0.03 && excess < 0.03 && speed < 20.0 && left < most_left;
         failures.extend((!is_good).then_some(case));
     }
     assert!(failures.is_empty(), "{failures:#?}");

@@ -129,5 +129,6 @@ fn tethers_keep_a_soft_cloth_within_its_length() {
         farthest
     });
     // The second of two tethers can push a particle a little past the first, and strands come after both.
-    assert!(reaches.iter().all(|&reach| reach <= 1.06), "{STABLE:?} are stretched to {reaches:?}");
+    let most = STABLE.map(|method| if method == bevy_drape::solver::Method::Strands { 1.06 } else { 1.05 });
+    assert!(reaches.iter().zip(most).all(|(&reach, most)| reach <= most), "{STABLE:?} are stretched to {reaches:?}");
 }
