@@ -14,7 +14,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothSolver {
-    /// Each thread of the cloth solved exactly, and coarse levels for the long waves: the least stretch for the time
+    /// Each thread of a woven mesh solved exactly, and coarse levels for the long waves: the least stretch for the time
     /// that it takes, stable at any stiffness and time step. For games.
     #[default]
     Strands,
@@ -49,10 +49,11 @@ pub struct Cloth {
     /// set by hand. The smaller, the more it costs, and the livelier the cloth.
     pub max_strain: f32,
     /// Substeps per step, at least 1. `None` for as many as [`max_strain`](Self::max_strain) needs, and at least 8 near
-    /// obstacles; with [`ClothSolver::Xpbd`] for 8.
+    /// obstacles, in a hand and without tethers; with [`ClothSolver::Xpbd`] for 8.
     pub substeps: Option<u32>,
-    /// Iterations of the coarse levels of [`ClothSolver::Strands`] in each substep. `None` for all levels that the mesh
-    /// has, an empty list for none of them.
+    /// Iterations of the coarse levels of [`ClothSolver::Strands`] in each substep, of which only cloth with tethers has
+    /// any. `None` for those that [`max_strain`](Self::max_strain) or the [`substeps`](Self::substeps) need, an empty list
+    /// for none of them.
     pub levels: Option<Vec<LevelPass>>,
     /// The most substeps that [`ClothSolver::Explicit`] may take per step. Where that isn't enough, stiffness and
     /// damping are cut down to what is stable, and one warning says so.

@@ -16,12 +16,16 @@ const FINEST_STRIDE: usize = 4;
 /// The fewest nodes along the longer side of a level.
 const FEWEST_NODES: usize = 4;
 
-/// All levels of a lattice, the coarsest first: each has twice the stride of the next.
+/// All levels of a lattice.
 pub(super) fn of_lattice(lattice: &Lattice) -> Vec<Level> {
-    let longer = lattice.rows.max(lattice.columns);
+    by_strides(lattice.rows.max(lattice.columns), |stride| level(lattice, stride))
+}
+
+/// Levels of a cloth with so many particles along its longer side, the coarsest first: each has twice the stride of the
+/// next.
+fn by_strides(longer: usize, level: impl Fn(usize) -> Level) -> Vec<Level> {
     let strides = core::iter::successors(Some(FINEST_STRIDE), |stride| Some(2 * stride));
-    let mut levels: Vec<Level> =
-        strides.take_while(|stride| longer / stride >= FEWEST_NODES).map(|stride| level(lattice, stride)).collect();
+    let mut levels: Vec<Level> = strides.take_while(|stride| longer / stride >= FEWEST_NODES).map(level).collect();
     levels.reverse();
     levels
 }
@@ -57,7 +61,8 @@ fn level(cloth: &Lattice, stride: usize) -> Level {
     Level { stride: stride as u32, lattice, rows, columns, ring, share, transfer }
 }
 
-/// `count` places thinned out to one in `stride` and at least `fewest`, both ends among them, as evenly as whole numbers allow.
+/// `count` places thinned out to one in `stride` and at least `fewest`, both ends among them, as evenly as whole numbers
+/// allow.
 fn places(count: usize, stride: usize, fewest: usize) -> Vec<usize> {
     let nodes = (count / stride).max(fewest);
     (0..nodes).map(|i| (i * (count - 1) + (nodes - 1) / 2) / (nodes - 1)).collect()

@@ -1,6 +1,6 @@
 //! Coarse lattices over a cloth, on which pulls travel far in few iterations.
 
-use bevy::prelude::{Reflect, ReflectDefault};
+use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
 use super::{
     Lattice,

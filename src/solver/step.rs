@@ -76,6 +76,9 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         }
         substep.move_freely(scratch);
         anchor::advance(&mut scratch.lanes, ctx.anchors, span.end, dt);
+        if let Some(tethers) = ctx.tethers {
+            scratch.pins.read(tethers, &scratch.lanes);
+        }
         match ctx.method {
             Method::Strands => {
                 grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
@@ -84,12 +87,10 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
             Method::Xpbd => {
                 substep.solve_springs(scratch);
                 grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
+                // After the hands: where both can't hold, pins are stronger.
+                substep.solve_tethers(scratch);
             }
             Method::Explicit => grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h),
-        }
-        if ctx.method == Method::Xpbd {
-            // After the hands: where both can't hold, pins are stronger.
-            substep.solve_tethers(scratch);
         }
         if is_near {
             contacts = contact::project(&mut scratch.lanes, ctx.obstacles, &ctx.material, span);
@@ -167,7 +168,6 @@ impl Substep<'_> {
     fn solve_strands(&self, scratch: &mut Scratch) {
         if let Some(run) = self.levels(scratch) {
             let Scratch { lanes, loom, pins, levels, .. } = scratch;
-            pins.read(run.tethers, lanes);
             levels.solve(&run, lanes, pins, loom);
         }
         self.solve_tethers(scratch);
@@ -202,7 +202,6 @@ impl Substep<'_> {
         let Scratch { lanes, pins, instructions, .. } = scratch;
         grab::solve_tethers(lanes, self.ctx.grabs, self.ctx.tether_slack);
         if let Some(tethers) = self.ctx.tethers {
-            pins.read(tethers, lanes);
             let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
             tether::solve(position, inverse_mass, tethers.of_cloth(), pins, self.ctx.tether_slack, *instructions);
         }

@@ -9,7 +9,7 @@
 
 use bevy::prelude::*;
 
-use super::{FEWEST_NODES, FINEST_STRIDE};
+use super::by_strides;
 use crate::solver::{Between, Lattice, Level, level::Transfer};
 
 /// Parts that the way from node to node is cut into to be measured along the cloth.
@@ -18,15 +18,11 @@ const PARTS: usize = 4;
 /// A point of a triangle: its corners and its barycentric weights.
 type InTriangle = ([u32; 3], [f32; 3]);
 
-/// All levels over a `chart`: coordinates of each particle, in which no two triangles overlap. The coarsest first.
+/// All levels over a `chart`: coordinates of each particle, in which no two triangles overlap.
 pub(in crate::build) fn of_chart(rest: &[Vec3], triangles: &[[u32; 3]], chart: &[Vec2]) -> Vec<Level> {
     let map = Map::new(rest, triangles, chart);
     let side = (rest.len() as f32).sqrt() as usize;
-    let strides = core::iter::successors(Some(FINEST_STRIDE), |stride| Some(2 * stride));
-    let mut levels: Vec<Level> =
-        strides.take_while(|stride| side / stride >= FEWEST_NODES).map(|stride| map.level(stride)).collect();
-    levels.reverse();
-    levels
+    by_strides(side, |stride| map.level(stride))
 }
 
 /// A chart, and its triangles in a raster so that they are found.

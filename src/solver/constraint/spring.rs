@@ -17,8 +17,8 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use crate::solver::{
     Lanes, Material, Spring, SpringBatch, SpringConstants, Topology,
-    lanes::{apart, together},
-    simd::{Instructions, LANES, SHORTEST, Vec3x8, lane},
+    lanes::{Block, apart, together},
+    simd::{Instructions, LANES, Lane, SHORTEST, Vec3x8, lane},
 };
 
 /// k h² and c h of springs in a substep of h seconds, kg.
@@ -46,6 +46,22 @@ pub(in crate::solver) struct End<S: Simd> {
     /// Position before the substep; read only where springs are damped.
     pub previous: Vec3x8<S>,
     pub inverse_mass: f32x8<S>,
+}
+
+impl<S: Simd> End<S> {
+    /// The particles of the block with number `at`.
+    #[inline(always)]
+    pub fn load<const DAMPED: bool>(
+        simd: S,
+        position: &[Block],
+        previous: &[Block],
+        inverse_mass: &[Lane],
+        at: usize,
+    ) -> Self {
+        let position = Vec3x8::load(simd, &position[at]);
+        let previous = if DAMPED { Vec3x8::load(simd, &previous[at]) } else { position };
+        Self { position, previous, inverse_mass: lane(simd, &inverse_mass[at]) }
+    }
 }
 
 /// Solves eight springs that share no particle, and returns where their ends are moved to. A spring with a rest length

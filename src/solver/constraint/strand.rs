@@ -97,12 +97,7 @@ impl Side for Pull {
 impl Pack<'_> {
     #[inline(always)]
     fn end<S: Simd, const DAMPED: bool>(&self, simd: S, j: usize) -> End<S> {
-        let position = Vec3x8::load(simd, &self.position[j]);
-        End {
-            position,
-            previous: if DAMPED { Vec3x8::load(simd, &self.previous[j]) } else { position },
-            inverse_mass: lane(simd, &self.inverse_mass[j]),
-        }
+        End::load::<DAMPED>(simd, self.position, self.previous, self.inverse_mass, j)
     }
 
     /// Solves the springs from each node to the next, and of a `CLOSED` ring the one from the last to the first. `rest`

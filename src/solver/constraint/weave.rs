@@ -13,7 +13,7 @@ use crate::solver::{
     Anchor, Lattice,
     lanes::{Block, Order},
     lattice::Threads,
-    simd::{Instructions, LANES, Lane, Vec3x8, lane, transpose},
+    simd::{Instructions, LANES, Lane, lane, transpose},
 };
 
 /// The particles of a lattice during a substep.
@@ -249,14 +249,8 @@ fn solve_row_pair<S: Simd, const DAMPED: bool>(
     rows: usize,
     constants: Scaled,
 ) {
-    let end = |sheet: &Sheet, at: usize| {
-        let position = Vec3x8::load(simd, &sheet.position[at]);
-        End {
-            position,
-            previous: if DAMPED { Vec3x8::load(simd, &sheet.previous[at]) } else { position },
-            inverse_mass: lane(simd, &sheet.inverse_mass[at]),
-        }
-    };
+    let end =
+        |sheet: &Sheet, at: usize| End::load::<DAMPED>(simd, sheet.position, sheet.previous, sheet.inverse_mass, at);
     let count = sheet.position.len();
     let mut here = end(sheet, to);
     // The first particle of the row is nobody's next one.
