@@ -34,7 +34,7 @@ pub use effort::Effort;
 pub use force::wind::{WindRegion, WindSource};
 pub(crate) use lanes::Lanes;
 pub use lattice::{Lattice, Threads};
-pub use level::{Between, Level, LevelPass, Transfer};
+pub use level::{Between, Level, LevelPass, Spread, Transfer};
 pub use material::{Material, SpringConstants};
 pub use measure::{Energy, Strain};
 pub use particles::Particles;

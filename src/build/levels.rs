@@ -1,9 +1,8 @@
 //! Coarse lattices over a cloth: here of one that is a lattice itself.
 
 use crate::solver::{
-    Between, Lattice, Level,
-    level::{Transfer, across},
-    simd::LANES,
+    Lattice, Level,
+    level::{Spread, Transfer},
 };
 
 mod chart;
@@ -27,6 +26,11 @@ fn by_strides(longer: usize, level: impl Fn(usize) -> Level) -> Vec<Level> {
     let strides = core::iter::successors(Some(FINEST_STRIDE), |stride| Some(2 * stride));
     let mut levels: Vec<Level> = strides.take_while(|stride| longer / stride >= FEWEST_NODES).map(level).collect();
     levels.reverse();
+    for i in 1..levels.len() {
+        let [coarser, finer] = [&levels[i - 1], &levels[i]];
+        let nodes = [&*coarser.rows, &*coarser.columns];
+        levels[i].from_coarser = Some(Spread::new(nodes, coarser.ring, [&finer.rows, &finer.columns]));
+    }
     levels
 }
 
@@ -53,12 +57,11 @@ fn level(cloth: &Lattice, stride: usize) -> Level {
     let share = (cloth.rows * cloth.columns) as f32 / (rows.len() * columns.len()) as f32;
     let [rows, columns] = [rows, columns].map(|places| places.into_iter().map(|at| at as f32).collect::<Vec<_>>());
     let ring = closed.then_some(cloth.columns as f32);
-    let between_rows = (0..cloth.rows).map(|row| Between::locate(&rows, row as f32)).collect();
-    let between: Vec<Between> =
-        (0..cloth.columns).map(|column| Between::locate_on(ring, &columns, column as f32)).collect();
-    let across_columns = between.chunks(LANES).map(|places| across(places, columns.len() as u32)).collect();
-    let transfer = Transfer::Lattice { slots, between_rows, across_columns };
-    Level { stride: stride as u32, lattice, rows, columns, ring, share, transfer }
+    let numbers = |count: usize| -> Vec<f32> { (0..count).map(|i| i as f32).collect() };
+    let particles = [numbers(cloth.rows), numbers(cloth.columns)];
+    let spread = Spread::new([&rows, &columns], ring, particles.each_ref().map(Vec::as_slice));
+    let transfer = Transfer::Lattice { slots, spread };
+    Level { stride: stride as u32, lattice, rows, columns, ring, share, from_coarser: None, transfer }
 }
 
 /// `count` places thinned out to one in `stride` and at least `fewest`, both ends among them, as evenly as whole numbers

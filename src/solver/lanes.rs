@@ -188,12 +188,17 @@ impl Lanes {
         self.previous.resize(order.block_count());
         self.position.load(order, &particles.position, instructions);
         self.velocity.load(order, &particles.velocity, instructions);
-        self.inverse_mass.clear();
-        self.inverse_mass.extend(order.blocks().map(|(first, count)| {
-            let mut lane = Lane::default();
-            lane[..count].copy_from_slice(&particles.inverse_mass[first..first + count]);
-            lane
-        }));
+        self.inverse_mass.resize(order.block_count(), Lane::default());
+        for ((first, count), lane) in order.blocks().zip(&mut self.inverse_mass) {
+            let masses = &particles.inverse_mass[first..first + count];
+            match masses.as_array() {
+                Some(masses) => *lane = *masses,
+                None => {
+                    *lane = Lane::default();
+                    lane[..count].copy_from_slice(masses);
+                }
+            }
+        }
     }
 
     /// Hands the state back.

@@ -102,10 +102,4 @@ impl Threads {
     pub(super) fn stretch(&self, pack: usize) -> &[Lane] {
         &self.stretch[pack * self.nodes..][..self.count]
     }
-
-    /// Rest lengths across two springs of the eight threads with number `pack`.
-    #[inline(always)]
-    pub(super) fn bend(&self, pack: usize) -> &[Lane] {
-        &self.bend[pack * self.nodes..][..self.count]
-    }
 }

@@ -25,6 +25,8 @@ pub struct Level {
     pub ring: Option<f32>,
     /// How many particles a node stands for.
     pub share: f32,
+    /// How the nodes move along with those of the next coarser level, if there is one.
+    pub from_coarser: Option<Spread>,
     /// How the nodes lie among the particles.
     pub transfer: Transfer,
 }
@@ -36,11 +38,8 @@ pub enum Transfer {
     Lattice {
         /// Slots of the particles that the nodes are; [`Level::NOBODY`] where there is no node.
         slots: Vec<[u32; LANES]>,
-        /// Where each row of the cloth lies between the rows of nodes.
-        between_rows: Vec<Between>,
-        /// For each eight columns of the cloth: the columns of nodes around them, and the share that each of the eight
-        /// has of them.
-        across_columns: Vec<Vec<(u32, Lane)>>,
+        /// How the particles move along with them.
+        spread: Spread,
     },
     /// For any other cloth: nodes lie in triangles.
     Chart {
@@ -66,9 +65,30 @@ impl Level {
     pub const NOBODY: u32 = u32::MAX;
 }
 
+/// What the crossings of rows and columns have of the nodes of a coarser lattice: each lies between four.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Where each row lies between the rows of nodes.
+    pub rows: Vec<Between>,
+    /// For each eight columns: the columns of nodes around them, and the share that each of the eight has of them.
+    pub columns: Vec<Vec<(u32, Lane)>>,
+}
+
+impl Spread {
+    /// From nodes at the crossings of some rows and columns, at these coordinates, to places at those of others. Where
+    /// rows are a `ring`, that is where columns begin again at 0.
+    pub fn new([rows, columns]: [&[f32]; 2], ring: Option<f32>, [to_rows, to_columns]: [&[f32]; 2]) -> Self {
+        let across: Vec<Between> = to_columns.iter().map(|&at| Between::locate_on(ring, columns, at)).collect();
+        Self {
+            rows: to_rows.iter().map(|&at| Between::locate(rows, at)).collect(),
+            columns: across.chunks(LANES).map(|places| shares(places, columns.len() as u32)).collect(),
+        }
+    }
+}
+
 impl Between {
     /// Where `coordinate` lies between two of `places`, at least two that rise: on a `ring` of that length, or on none.
-    pub fn locate_on(ring: Option<f32>, places: &[f32], coordinate: f32) -> Self {
+    fn locate_on(ring: Option<f32>, places: &[f32], coordinate: f32) -> Self {
         let last = places[places.len() - 1];
         match ring {
             Some(length) if coordinate > last => {
@@ -88,7 +108,7 @@ impl Between {
 }
 
 /// The neighbours around eight places in a row of `count` nodes, and the share that each place has of them.
-pub(crate) fn across(places: &[Between], count: u32) -> Vec<(u32, Lane)> {
+fn shares(places: &[Between], count: u32) -> Vec<(u32, Lane)> {
     let second = |place: &Between| (place.first + 1) % count;
     let mut nodes: Vec<u32> = places.iter().flat_map(|place| [place.first, second(place)]).collect();
     nodes.sort_unstable();

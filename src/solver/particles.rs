@@ -50,6 +50,13 @@ impl Particles {
         }
     }
 
+    /// Whether any external force acts.
+    pub(super) fn is_pushed(&self) -> bool {
+        // Many at a time: mostly there is none, and all are looked at.
+        let sum = |forces: &[Vec3A]| forces.iter().fold(Vec3A::ZERO, |sum, force| sum + force.abs());
+        self.force.chunks(64).any(|forces| sum(forces) != Vec3A::ZERO)
+    }
+
     /// Whether every position and velocity is a finite number.
     pub fn is_finite(&self) -> bool {
         let finite = |values: &[Vec3A]| values.iter().all(|v| v.is_finite());

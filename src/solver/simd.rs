@@ -5,7 +5,7 @@
 
 use core::ops::{Add, Mul, Sub};
 
-use fearless_simd::{f32x8, mask32x8, prelude::*};
+use fearless_simd::{f32x8, f32x16, prelude::*};
 
 use super::lanes::Block;
 
@@ -37,20 +37,62 @@ impl Instructions {
     }
 }
 
-/// Eight points or directions.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Vec3x8<S: Simd> {
-    pub x: f32x8<S>,
-    pub y: f32x8<S>,
-    pub z: f32x8<S>,
+/// Numbers side by side: the eight of a block, or the sixteen of two blocks at once.
+///
+/// Sixteen pay where each number waits for the one before, as along a thread: the units that divide would be idle.
+pub(super) trait Wide<S: Simd>: SimdFloat<S, Element = f32> {
+    /// Number of blocks.
+    const PACKS: usize;
+
+    /// Takes over the lanes at `at`, and of two blocks also those `stride` further on.
+    fn load(simd: S, lanes: &[Lane], at: usize, stride: usize) -> Self;
+
+    /// Hands them back.
+    fn store(self, lanes: &mut [Lane], at: usize, stride: usize);
 }
 
-impl<S: Simd> Vec3x8<S> {
+impl<S: Simd> Wide<S> for f32x8<S> {
+    const PACKS: usize = 1;
+
     #[inline(always)]
-    pub fn splat(simd: S, [x, y, z]: [f32; 3]) -> Self {
-        Self { x: f32x8::splat(simd, x), y: f32x8::splat(simd, y), z: f32x8::splat(simd, z) }
+    fn load(simd: S, lanes: &[Lane], at: usize, _: usize) -> Self {
+        lane(simd, &lanes[at])
     }
 
+    #[inline(always)]
+    fn store(self, lanes: &mut [Lane], at: usize, _: usize) {
+        lanes[at] = self.into();
+    }
+}
+
+impl<S: Simd> Wide<S> for f32x16<S> {
+    const PACKS: usize = 2;
+
+    #[inline(always)]
+    fn load(simd: S, lanes: &[Lane], at: usize, stride: usize) -> Self {
+        lane(simd, &lanes[at]).combine(lane(simd, &lanes[at + stride]))
+    }
+
+    #[inline(always)]
+    fn store(self, lanes: &mut [Lane], at: usize, stride: usize) {
+        let (first, second) = self.split();
+        lanes[at] = first.into();
+        lanes[at + stride] = second.into();
+    }
+}
+
+/// Points or directions side by side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vec3Wide<F> {
+    pub x: F,
+    pub y: F,
+    pub z: F,
+}
+
+/// Eight points or directions.
+pub(super) type Vec3x8<S> = Vec3Wide<f32x8<S>>;
+
+impl<S: Simd> Vec3x8<S> {
     #[inline(always)]
     pub fn load(simd: S, [x, y, z]: &Block) -> Self {
         Self { x: lane(simd, x), y: lane(simd, y), z: lane(simd, z) }
@@ -72,20 +114,62 @@ impl<S: Simd> Vec3x8<S> {
     pub fn behind(self, next: Self) -> Self {
         Self { x: self.x.slide::<7>(next.x), y: self.y.slide::<7>(next.y), z: self.z.slide::<7>(next.z) }
     }
+}
+
+impl<F> Vec3Wide<F> {
+    #[inline(always)]
+    pub fn splat<S: Simd>(simd: S, [x, y, z]: [f32; 3]) -> Self
+    where
+        F: Wide<S>,
+    {
+        Self { x: F::splat(simd, x), y: F::splat(simd, y), z: F::splat(simd, z) }
+    }
+
+    /// Takes over the block at `at`, and where there are two also that `stride` further on.
+    #[inline(always)]
+    pub fn load_at<S: Simd>(simd: S, blocks: &[Block], at: usize, stride: usize) -> Self
+    where
+        F: Wide<S>,
+    {
+        let (lanes, at, stride) = (blocks.as_flattened(), 3 * at, 3 * stride);
+        Self {
+            x: F::load(simd, lanes, at, stride),
+            y: F::load(simd, lanes, at + 1, stride),
+            z: F::load(simd, lanes, at + 2, stride),
+        }
+    }
+
+    /// Hands it back.
+    #[inline(always)]
+    pub fn store_at<S: Simd>(self, blocks: &mut [Block], at: usize, stride: usize)
+    where
+        F: Wide<S>,
+    {
+        let (lanes, at, stride) = (blocks.as_flattened_mut(), 3 * at, 3 * stride);
+        self.x.store(lanes, at, stride);
+        self.y.store(lanes, at + 1, stride);
+        self.z.store(lanes, at + 2, stride);
+    }
 
     #[inline(always)]
-    pub fn dot(self, other: Self) -> f32x8<S> {
+    pub fn dot(self, other: Self) -> F
+    where
+        F: Add<Output = F> + Mul<Output = F>,
+    {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
     /// `self` where `mask` is set, else `other`.
     #[inline(always)]
-    pub fn or(self, mask: mask32x8<S>, other: Self) -> Self {
+    pub fn or<S: Simd>(self, mask: F::Mask, other: Self) -> Self
+    where
+        F: Wide<S>,
+    {
         Self { x: mask.select(self.x, other.x), y: mask.select(self.y, other.y), z: mask.select(self.z, other.z) }
     }
 }
 
-impl<S: Simd> Add for Vec3x8<S> {
+impl<F: Add<Output = F>> Add for Vec3Wide<F> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -93,7 +177,7 @@ impl<S: Simd> Add for Vec3x8<S> {
     }
 }
 
-impl<S: Simd> Sub for Vec3x8<S> {
+impl<F: Sub<Output = F>> Sub for Vec3Wide<F> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -101,10 +185,10 @@ impl<S: Simd> Sub for Vec3x8<S> {
     }
 }
 
-impl<S: Simd> Mul<f32x8<S>> for Vec3x8<S> {
+impl<F: Mul<Output = F> + Copy> Mul<F> for Vec3Wide<F> {
     type Output = Self;
     #[inline(always)]
-    fn mul(self, factor: f32x8<S>) -> Self {
+    fn mul(self, factor: F) -> Self {
         Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
     }
 }

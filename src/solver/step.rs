@@ -55,7 +55,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         }
     };
     let substeps = needed_substeps.min(most);
-    let is_pushed = wind::feels_air(ctx) || particles.force.iter().any(|&force| force != Vec3A::ZERO);
+    let is_pushed = wind::feels_air(ctx) || particles.is_pushed();
     let last = Last::between(ctx.anchors, topology.order());
     let substep = Substep { topology, ctx, h: dt / substeps as f32, stiffness_scale, is_pushed, last, levels };
     let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
@@ -124,7 +124,8 @@ impl Substep<'_> {
     /// Works out what doesn't change from substep to substep.
     fn prepare(&self, scratch: &mut Scratch) {
         if let (Method::Strands, Some(lattice)) = (self.ctx.method, &self.topology.lattice) {
-            weave::masses_along_rows(lattice, &scratch.lanes.inverse_mass, &mut scratch.row_masses);
+            let Scratch { lanes, row_masses, instructions, .. } = scratch;
+            weave::masses_along_rows(lattice, &lanes.inverse_mass, row_masses, *instructions);
         }
         if let Some(run) = self.levels(scratch) {
             scratch.levels.fit(&run, &scratch.lanes);

@@ -124,7 +124,7 @@ impl<'a> Map<'a> {
         let particles = self.chart.iter().map(|&at| around(at, &rows, &columns, &lattice, &nodes)).collect();
         let share = self.rest.len() as f32 / present.max(1) as f32;
         let transfer = Transfer::Chart { nodes, particles };
-        Level { stride: stride as u32, lattice, rows, columns, ring: None, share, transfer }
+        Level { stride: stride as u32, lattice, rows, columns, ring: None, share, from_coarser: None, transfer }
     }
 
     /// How long the cloth is along both axes of the chart, m: by the mean stretch of its triangles.

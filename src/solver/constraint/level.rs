@@ -13,6 +13,8 @@
 //! A multigrid of displacements in the spirit of Müller, "Hierarchical Position Based Dynamics" (2008), with exact
 //! strands as the smoother.
 
+use core::ops::Range;
+
 use bevy::math::Vec3A;
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
@@ -24,8 +26,8 @@ use super::{
 };
 use crate::solver::{
     Lanes, Level, LevelPass, Tethers,
-    lanes::{Block, Points},
-    level::{Between, Transfer},
+    lanes::{Block, Order, Points},
+    level::{Between, Spread, Transfer},
     simd::{Instructions, LANES, Lane, Vec3x8, lane},
 };
 
@@ -35,6 +37,7 @@ const TAUTER: f32 = 0.005;
 /// The nodes of a level during a step.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Nodes {
+    order: Order,
     position: Points,
     /// Where they started, and in the end how far they went, m.
     way: Points,
@@ -46,8 +49,8 @@ pub(in crate::solver) struct Nodes {
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Levels {
     nodes: Vec<Nodes>,
-    /// Ways of the finest level's rows, spread over the columns of the cloth.
-    spread: Points,
+    /// Ways of a level's rows, spread over finer columns.
+    across: Points,
 }
 
 /// What the levels need to know of a substep.
@@ -63,12 +66,16 @@ pub(in crate::solver) struct LevelRun<'a> {
 }
 
 impl LevelRun<'_> {
-    /// Numbers of the levels that are used, the coarsest first, with their iterations.
-    fn used(&self) -> impl Iterator<Item = (usize, u32)> {
-        let iterations = |level: &Level| self.passes.iter().find(|pass| pass.stride == level.stride);
-        let used =
-            self.levels.iter().enumerate().filter_map(move |(i, level)| Some((i, iterations(level)?.iterations)));
-        used.filter(|&(_, iterations)| iterations > 0)
+    /// Iterations of a level.
+    fn iterations(&self, level: &Level) -> u32 {
+        self.passes.iter().find(|pass| pass.stride == level.stride).map_or(0, |pass| pass.iterations)
+    }
+
+    /// Numbers of the levels from the coarsest that iterates to the finest.
+    fn used(&self) -> Range<usize> {
+        let iterates = |level: &Level| self.iterations(level) > 0;
+        let first = self.levels.iter().position(iterates).unwrap_or(0);
+        first..self.levels.iter().rposition(iterates).map_or(0, |last| last + 1)
     }
 }
 
@@ -76,39 +83,47 @@ impl Levels {
     /// Makes room, and gives the nodes their masses, once a step.
     pub fn fit(&mut self, run: &LevelRun, lanes: &Lanes) {
         self.nodes.resize_with(self.nodes.len().max(run.levels.len()), Nodes::default);
-        for (i, _) in run.used() {
-            self.nodes[i].fit(&run.levels[i], lanes);
+        for i in run.used() {
+            self.nodes[i].fit(&run.levels[i], lanes, run.instructions);
         }
     }
 
     /// Moves all particles of the cloth along with the levels, once a substep.
     pub fn solve(&mut self, run: &LevelRun, lanes: &mut Lanes, pins: &PinPlaces, loom: &mut Loom) {
-        let mut coarser: Option<usize> = None;
-        for (i, iterations) in run.used() {
-            let (done, rest) = self.nodes.split_at_mut(i);
-            let (level, nodes) = (&run.levels[i], &mut rest[0]);
+        let (Self { nodes, across }, set) = (self, run.instructions.level());
+        let mut coarser: Option<&Nodes> = None;
+        for ((i, level), nodes) in run.used().zip(&run.levels[run.used()]).zip(&mut nodes[run.used()]) {
             nodes.restrict(level, lanes);
-            if let Some(coarser) = coarser {
-                nodes.add_ways(level, &run.levels[coarser], &done[coarser].way);
+            if let (Some(coarser), Some(spread)) = (coarser, &level.from_coarser) {
+                let Nodes { position, inverse_mass, .. } = nodes;
+                dispatch!(set, simd => coarser.prolong(simd, spread, &mut position.0, inverse_mass, across));
             }
             let tethers = run.tethers.of_level(i);
-            for _ in 0..iterations {
+            for _ in 0..run.iterations(level) {
                 nodes.iterate(level, run, tethers, pins, loom);
             }
             nodes.finish();
-            coarser = Some(i);
+            coarser = Some(nodes);
         }
-        if let Some(i) = coarser {
-            let Self { nodes, spread } = self;
-            let level = run.instructions.level();
-            dispatch!(level, simd => nodes[i].prolong(simd, &run.levels[i], lanes, spread));
+        let finest = run.levels[run.used()].last().map(|level| &level.transfer);
+        if let (Some(nodes), Some(transfer)) = (coarser, finest) {
+            let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
+            match transfer {
+                Transfer::Lattice { spread, .. } => {
+                    dispatch!(set, simd => nodes.prolong(simd, spread, position, inverse_mass, across));
+                }
+                Transfer::Chart { particles, .. } => {
+                    dispatch!(set, simd => nodes.prolong_chart(simd, particles, position, inverse_mass));
+                }
+            }
         }
     }
 }
 
 impl Nodes {
-    fn fit(&mut self, level: &Level, lanes: &Lanes) {
-        let blocks = level.lattice.order().block_count();
+    fn fit(&mut self, level: &Level, lanes: &Lanes, instructions: Instructions) {
+        self.order = level.lattice.order();
+        let blocks = self.order.block_count();
         self.position.resize(blocks);
         self.way.resize(blocks);
         self.inverse_mass.clear();
@@ -129,7 +144,7 @@ impl Nodes {
                 }
             }
         }
-        weave::masses_along_rows(&level.lattice, &self.inverse_mass, &mut self.row_masses);
+        weave::masses_along_rows(&level.lattice, &self.inverse_mass, &mut self.row_masses, instructions);
     }
 
     /// Puts the nodes where the cloth is.
@@ -152,27 +167,6 @@ impl Nodes {
         self.way.0.clone_from(&self.position.0);
     }
 
-    /// Moves the nodes along with those of a coarser level.
-    fn add_ways(&mut self, level: &Level, coarser: &Level, ways: &Points) {
-        let (order, from) = (level.lattice.order(), coarser.lattice.order());
-        for (row, &at_row) in level.rows.iter().enumerate() {
-            let down = Between::locate(&coarser.rows, at_row);
-            for (column, &at_column) in level.columns.iter().enumerate() {
-                let slot = order.slot_at(row, column);
-                if self.inverse_mass[slot / LANES][slot % LANES] > 0.0 {
-                    let along = Between::locate_on(coarser.ring, &coarser.columns, at_column);
-                    let after = (along.first + 1) % coarser.columns.len() as u32;
-                    let in_row = |row: u32| {
-                        let way = |column: u32| ways.get(from.slot_at(row as usize, column as usize));
-                        way(along.first).lerp(way(after), along.share)
-                    };
-                    let way = in_row(down.first).lerp(in_row(down.first + 1), down.share);
-                    self.position.set(slot, self.position.get(slot) + way);
-                }
-            }
-        }
-    }
-
     fn iterate(&mut self, level: &Level, run: &LevelRun, tethers: &[TetherBlock], pins: &PinPlaces, loom: &mut Loom) {
         let position = &mut self.position.0;
         tether::solve(position, &self.inverse_mass, tethers, pins, run.slack, run.instructions);
@@ -192,45 +186,48 @@ impl Nodes {
         }
     }
 
-    /// Moves all free particles of the cloth along with the nodes.
+    /// Moves everything free along with the nodes that it lies between.
     #[inline(always)]
-    fn prolong<S: Simd>(&self, simd: S, level: &Level, lanes: &mut Lanes, spread: &mut Points) {
-        match &level.transfer {
-            Transfer::Lattice { between_rows, across_columns, .. } => {
-                self.spread_across(simd, level, lanes.order.pack_count(), across_columns, spread);
-                spread_down(simd, level.rows.len(), between_rows, spread, lanes);
-            }
-            Transfer::Chart { particles, .. } => self.prolong_chart(simd, particles, lanes),
-        }
-    }
-
-    /// Ways of the rows of nodes at all columns of the cloth.
-    #[inline(always)]
-    fn spread_across<S: Simd>(
+    fn prolong<S: Simd>(
         &self,
         simd: S,
-        level: &Level,
-        packs: usize,
-        across_columns: &[Vec<(u32, Lane)>],
-        spread: &mut Points,
+        spread: &Spread,
+        position: &mut [Block],
+        inverse_mass: &[Lane],
+        across: &mut Points,
     ) {
-        let (order, rows) = (level.lattice.order(), level.rows.len());
-        spread.resize(packs * rows);
-        for (nodes, spread) in across_columns.iter().zip(spread.0.chunks_exact_mut(rows)) {
-            for (row, spread) in spread.iter_mut().enumerate() {
+        let node_rows = self.order.rows;
+        across.resize(spread.columns.len() * node_rows);
+        for (nodes, across) in spread.columns.iter().zip(across.0.chunks_exact_mut(node_rows)) {
+            for (row, across) in across.iter_mut().enumerate() {
                 let mut way = Vec3x8::splat(simd, [0.0; 3]);
                 for (column, shares) in nodes {
-                    let node = self.way.get(order.slot_at(row, *column as usize)).to_array();
+                    let node = self.way.get(self.order.slot_at(row, *column as usize)).to_array();
                     way = way + Vec3x8::splat(simd, node) * lane(simd, shares);
                 }
-                way.store(spread);
+                way.store(across);
+            }
+        }
+        let rows = spread.rows.len();
+        let places = position.chunks_exact_mut(rows).zip(inverse_mass.chunks_exact(rows));
+        for ((places, masses), across) in places.zip(across.0.chunks_exact(node_rows)) {
+            for ((place, w), &Between { first, share }) in places.iter_mut().zip(masses).zip(&spread.rows) {
+                let above = Vec3x8::load(simd, &across[first as usize]);
+                let below = Vec3x8::load(simd, &across[first as usize + 1]);
+                move_free(simd, place, w, above + (below - above) * f32x8::splat(simd, share));
             }
         }
     }
 
     #[inline(always)]
-    fn prolong_chart<S: Simd>(&self, simd: S, particles: &[([u32; 4], [f32; 4])], lanes: &mut Lanes) {
-        let blocks = lanes.position.0.iter_mut().zip(&lanes.inverse_mass).zip(particles.chunks(LANES));
+    fn prolong_chart<S: Simd>(
+        &self,
+        simd: S,
+        particles: &[([u32; 4], [f32; 4])],
+        position: &mut [Block],
+        inverse_mass: &[Lane],
+    ) {
+        let blocks = position.iter_mut().zip(inverse_mass).zip(particles.chunks(LANES));
         for ((place, w), particles) in blocks {
             let mut way = Block::default();
             for (lane, (nodes, shares)) in particles.iter().enumerate() {
@@ -241,20 +238,6 @@ impl Nodes {
                 (way[0][lane], way[1][lane], way[2][lane]) = sum.into();
             }
             move_free(simd, place, w, Vec3x8::load(simd, &way));
-        }
-    }
-}
-
-/// Moves all free particles of a lattice, between the ways of the rows of nodes.
-#[inline(always)]
-fn spread_down<S: Simd>(simd: S, node_rows: usize, between_rows: &[Between], spread: &Points, lanes: &mut Lanes) {
-    let rows = lanes.order.rows;
-    let places = lanes.position.0.chunks_exact_mut(rows).zip(lanes.inverse_mass.chunks_exact(rows));
-    for ((places, masses), spread) in places.zip(spread.0.chunks_exact(node_rows)) {
-        for ((place, w), &Between { first, share }) in places.iter_mut().zip(masses).zip(between_rows) {
-            let above = Vec3x8::load(simd, &spread[first as usize]);
-            let below = Vec3x8::load(simd, &spread[first as usize + 1]);
-            move_free(simd, place, w, above + (below - above) * f32x8::splat(simd, share));
         }
     }
 }

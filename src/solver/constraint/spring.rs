@@ -17,8 +17,8 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use crate::solver::{
     Lanes, Material, Spring, SpringBatch, SpringConstants, Topology,
-    lanes::{Block, apart, together},
-    simd::{Instructions, LANES, Lane, SHORTEST, Vec3x8, lane},
+    lanes::{apart, together},
+    simd::{Instructions, LANES, SHORTEST, Vec3Wide, Vec3x8, Wide, lane},
 };
 
 /// k h² and c h of springs in a substep of h seconds, kg.
@@ -39,51 +39,35 @@ impl Scaled {
     }
 }
 
-/// One end of eight springs.
+/// One end of springs side by side.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct End<S: Simd> {
-    pub position: Vec3x8<S>,
+pub(in crate::solver) struct End<F> {
+    pub position: Vec3Wide<F>,
     /// Position before the substep; read only where springs are damped.
-    pub previous: Vec3x8<S>,
-    pub inverse_mass: f32x8<S>,
+    pub previous: Vec3Wide<F>,
+    pub inverse_mass: F,
 }
 
-impl<S: Simd> End<S> {
-    /// The particles of the block with number `at`.
-    #[inline(always)]
-    pub fn load<const DAMPED: bool>(
-        simd: S,
-        position: &[Block],
-        previous: &[Block],
-        inverse_mass: &[Lane],
-        at: usize,
-    ) -> Self {
-        let position = Vec3x8::load(simd, &position[at]);
-        let previous = if DAMPED { Vec3x8::load(simd, &previous[at]) } else { position };
-        Self { position, previous, inverse_mass: lane(simd, &inverse_mass[at]) }
-    }
-}
-
-/// Solves eight springs that share no particle, and returns where their ends are moved to. A spring with a rest length
-/// of zero isn't there.
+/// Solves springs side by side that share no particle, and returns where their ends are moved to. A spring with a rest
+/// length of zero isn't there.
 #[inline(always)]
-pub(in crate::solver) fn solve_eight<S: Simd, const DAMPED: bool>(
+pub(in crate::solver) fn solve_abreast<S: Simd, F: Wide<S>, const DAMPED: bool>(
     simd: S,
-    a: End<S>,
-    b: End<S>,
-    rest: f32x8<S>,
+    a: End<F>,
+    b: End<F>,
+    rest: F,
     Scaled { k, c }: Scaled,
-) -> [Vec3x8<S>; 2] {
+) -> [Vec3Wide<F>; 2] {
     let along = b.position - a.position;
     let squared = along.dot(along);
-    let length = squared.sqrt().max(f32x8::splat(simd, SHORTEST));
+    let length = squared.sqrt().max(F::splat(simd, SHORTEST));
     let mut push = (rest - length) * k;
     if DAMPED {
         // Along the spring: n·Δ = along·Δ / length.
         push -= along.dot(along - (b.previous - a.previous)) * c / length;
     }
     let per_length = push / (length * ((a.inverse_mass + b.inverse_mass) * (k + c) + 1.0));
-    let none = f32x8::splat(simd, 0.0);
+    let none = F::splat(simd, 0.0);
     let per_length = rest.simd_gt(none).select(per_length, none);
     [a.position - along * (per_length * a.inverse_mass), b.position + along * (per_length * b.inverse_mass)]
 }
@@ -133,7 +117,7 @@ impl Beads {
 impl Beads {
     /// One end of eight springs, at eight particles.
     #[inline(always)]
-    fn end<S: Simd, const DAMPED: bool>(&self, simd: S, particles: &[u32; LANES]) -> End<S> {
+    fn end<S: Simd, const DAMPED: bool>(&self, simd: S, particles: &[u32; LANES]) -> End<f32x8<S>> {
         let [x, y, z, inverse_mass] = gather(simd, &self.now, particles);
         let position = Vec3x8 { x, y, z };
         let previous = if DAMPED {
@@ -235,7 +219,7 @@ fn solve_gathered<S: Simd, const DAMPED: bool>(
     let b = [s0.b, s1.b, s2.b, s3.b, s4.b, s5.b, s6.b, s7.b];
     let rest = [s0.rest, s1.rest, s2.rest, s3.rest, s4.rest, s5.rest, s6.rest, s7.rest];
     let (end_a, end_b) = (beads.end::<S, DAMPED>(simd, &a), beads.end::<S, DAMPED>(simd, &b));
-    let [at_a, at_b] = solve_eight::<S, DAMPED>(simd, end_a, end_b, lane(simd, &rest), constants);
+    let [at_a, at_b] = solve_abreast::<_, _, DAMPED>(simd, end_a, end_b, lane(simd, &rest), constants);
     beads.put(&a, at_a, end_a.inverse_mass);
     beads.put(&b, at_b, end_b.inverse_mass);
 }

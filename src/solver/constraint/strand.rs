@@ -30,18 +30,18 @@
 //! A ring has one spring more, from its last particle to its first. It borders the matrix with a row and a column, which
 //! are eliminated along with the others and come first on the way back.
 
-use fearless_simd::{f32x8, prelude::*};
+use fearless_simd::prelude::*;
 
 use super::{
-    spring::{End, Scaled, solve_eight},
+    spring::{End, Scaled, solve_abreast},
     weave::Yarn,
 };
 use crate::solver::{
     lanes::Block,
-    simd::{Lane, SHORTEST, Vec3x8, lane},
+    simd::{Lane, SHORTEST, Vec3Wide, Wide},
 };
 
-/// Eight threads side by side, node after node.
+/// Eight threads side by side, node after node; or two times eight, those of the second pack after all of the first.
 pub(in crate::solver) struct Pack<'a> {
     /// Positions, m.
     pub position: &'a mut [Block],
@@ -49,26 +49,35 @@ pub(in crate::solver) struct Pack<'a> {
     pub previous: &'a [Block],
     /// Inverse masses, 1/kg.
     pub inverse_mass: &'a [Lane],
+    /// From a node of the first pack to that of the second.
+    pub stride: usize,
 }
 
-/// What elimination leaves of the row of the spring from a node to the next.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::solver) struct Row {
-    /// d, from the node to the next.
-    along: Block,
+/// What elimination leaves of the row of each spring from a node to the next.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Rows {
     /// The right side, over the pivot.
-    right: Lane,
+    right: Vec<Lane>,
     /// The factor below the diagonal.
-    lower: Lane,
+    lower: Vec<Lane>,
     /// The entry in the column of the spring that closes a ring, over the pivot.
-    border: Lane,
+    border: Vec<Lane>,
+}
+
+impl Rows {
+    /// Makes room for as many nodes.
+    pub fn make_room(&mut self, count: usize) {
+        for lanes in [&mut self.right, &mut self.lower, &mut self.border] {
+            lanes.resize(lanes.len().max(count), Lane::default());
+        }
+    }
 }
 
 /// A spring's row of the system: its direction, its diagonal entry and its right side.
-struct Spring<S: Simd> {
-    along: Vec3x8<S>,
-    diagonal: f32x8<S>,
-    right: f32x8<S>,
+struct Spring<F> {
+    along: Vec3Wide<F>,
+    diagonal: F,
+    right: F,
 }
 
 /// Which side of its rest length a spring acts on.
@@ -96,63 +105,59 @@ impl Side for Pull {
 
 impl Pack<'_> {
     #[inline(always)]
-    fn end<S: Simd, const DAMPED: bool>(&self, simd: S, j: usize) -> End<S> {
-        End::load::<DAMPED>(simd, self.position, self.previous, self.inverse_mass, j)
+    fn end<S: Simd, F: Wide<S>, const DAMPED: bool>(&self, simd: S, j: usize) -> End<F> {
+        let position = Vec3Wide::load_at(simd, self.position, j, self.stride);
+        let previous = if DAMPED { Vec3Wide::load_at(simd, self.previous, j, self.stride) } else { position };
+        End { position, previous, inverse_mass: F::load(simd, self.inverse_mass, j, self.stride) }
     }
 
-    /// Solves the springs from each node to the next, and of a `CLOSED` ring the one from the last to the first. `rest`
-    /// has the springs' rest lengths in m, one for each node; where it is zero, there is no spring.
+    /// Solves the springs from each of `count` nodes to the next, and of a `CLOSED` ring the one from the last to the
+    /// first. `rest` has the springs' rest lengths in m, one for each node; where it is zero, there is no spring.
     #[inline(always)]
-    pub fn solve<S: Simd, D: Side, const DAMPED: bool, const CLOSED: bool>(
+    pub fn solve<S: Simd, F: Wide<S>, D: Side, const DAMPED: bool, const CLOSED: bool>(
         &mut self,
         simd: S,
+        count: usize,
         rest: &[Lane],
         yarn: Yarn,
-        rows: &mut [Row],
+        rows: &mut Rows,
     ) {
-        // Of one length, as the compiler can see.
-        let count = rest.len();
-        let mut pack = Pack {
-            position: &mut self.position[..count],
-            previous: if DAMPED { &self.previous[..count] } else { &[] },
-            inverse_mass: &self.inverse_mass[..count],
-        };
-        let rows = &mut rows[..count];
-        let closing = pack.eliminate::<S, D, DAMPED, CLOSED>(simd, rest, yarn, rows);
-        pack.substitute::<S, D, CLOSED>(simd, rows, closing);
+        let closing = self.eliminate::<S, F, D, DAMPED, CLOSED>(simd, count, rest, yarn, rows);
+        self.substitute::<S, F, D, CLOSED>(simd, count, rows, closing);
     }
 
     /// From the first node to the last.
     #[inline(always)]
-    fn eliminate<S: Simd, D: Side, const DAMPED: bool, const CLOSED: bool>(
+    fn eliminate<S: Simd, F: Wide<S>, D: Side, const DAMPED: bool, const CLOSED: bool>(
         &self,
         simd: S,
+        count: usize,
         rest: &[Lane],
         yarn: Yarn,
-        rows: &mut [Row],
-    ) -> Spring<S> {
-        let (none, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let last = rows.len() - 1;
-        let first = self.end::<S, DAMPED>(simd, 0);
-        let mut closing = Spring { along: Vec3x8::splat(simd, [0.0; 3]), diagonal: one, right: none };
+        rows: &mut Rows,
+    ) -> Spring<F> {
+        let stride = self.stride;
+        let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
+        let last = count - 1;
+        let first = self.end::<S, F, DAMPED>(simd, 0);
+        let mut closing = Spring { along: Vec3Wide::splat(simd, [0.0; 3]), diagonal: one, right: none };
         let mut border = none;
         if CLOSED {
-            let ends = [self.end::<S, DAMPED>(simd, last), first];
-            closing = spring::<S, D, DAMPED>(simd, ends, &rest[last], yarn);
+            let ends = [self.end::<S, F, DAMPED>(simd, last), first];
+            closing = spring::<S, F, D, DAMPED>(simd, ends, F::load(simd, rest, last, stride), yarn);
         }
         let mut here = first;
-        let mut before = Vec3x8::splat(simd, [0.0; 3]);
+        let mut before = Vec3Wide::splat(simd, [0.0; 3]);
         let (mut inverse_pivot, mut right) = (none, none);
         for j in 0..last {
-            let next = self.end::<S, DAMPED>(simd, j + 1);
-            let spring = spring::<S, D, DAMPED>(simd, [here, next], &rest[j], yarn);
+            let next = self.end::<S, F, DAMPED>(simd, j + 1);
+            let spring = spring::<S, F, D, DAMPED>(simd, [here, next], F::load(simd, rest, j, stride), yarn);
             let below = here.inverse_mass * before.dot(spring.along);
             let lower = below * inverse_pivot;
             inverse_pivot = one / (spring.diagonal - below * lower);
             right = spring.right + lower * right;
-            let row = &mut rows[j];
-            spring.along.store(&mut row.along);
-            (row.right, row.lower) = ((right * inverse_pivot).into(), lower.into());
+            (right * inverse_pivot).store(&mut rows.right, j, stride);
+            lower.store(&mut rows.lower, j, stride);
             if CLOSED {
                 border *= lower;
                 if j == 0 {
@@ -164,7 +169,7 @@ impl Pack<'_> {
                 let over_pivot = border * inverse_pivot;
                 closing.diagonal -= border * over_pivot;
                 closing.right -= over_pivot * right;
-                row.border = over_pivot.into();
+                over_pivot.store(&mut rows.border, j, stride);
             }
             (here, before) = (next, spring.along);
         }
@@ -174,11 +179,18 @@ impl Pack<'_> {
     /// From the last node back to the first, which leaves each place but for its share of the one before, and on to the
     /// last again.
     #[inline(always)]
-    fn substitute<S: Simd, D: Side, const CLOSED: bool>(&mut self, simd: S, rows: &mut [Row], closing: Spring<S>) {
-        let (none, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+    fn substitute<S: Simd, F: Wide<S>, D: Side, const CLOSED: bool>(
+        &mut self,
+        simd: S,
+        count: usize,
+        rows: &mut Rows,
+        closing: Spring<F>,
+    ) {
+        let stride = self.stride;
+        let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
         let mut closing_mu = none;
         if CLOSED {
-            closing_mu = pulling::<S, D>(simd, closing.right / closing.diagonal);
+            closing_mu = pulling::<S, F, D>(simd, closing.right / closing.diagonal);
         }
         // What closes a ring, and what is pressed together, pushes along the direction that it had.
         let closing_push = closing.along * closing_mu;
@@ -186,87 +198,94 @@ impl Pack<'_> {
         let (mut mu, mut lower) = (none, none);
         // Of the node after: tension towards it, its place but for its share of this one's, and that share.
         let (mut tension_after, mut place_after, mut share_after) = (none, closing_push, none);
-        for j in (0..rows.len()).rev() {
+        let mut here = Vec3Wide::load_at(simd, self.position, count - 1, stride);
+        for j in (0..count).rev() {
+            let mut before = here;
             // The first node has no spring before it but the one that closes a ring.
             let (tension, push) = if j > 0 {
-                let row = &rows[j - 1];
-                mu = lane(simd, &row.right) + lower * mu;
+                before = Vec3Wide::load_at(simd, self.position, j - 1, stride);
+                mu = F::load(simd, &rows.right, j - 1, stride) + lower * mu;
                 if CLOSED {
-                    mu -= lane(simd, &row.border) * closing_mu;
+                    mu -= F::load(simd, &rows.border, j - 1, stride) * closing_mu;
                 }
-                mu = pulling::<S, D>(simd, mu);
-                lower = lane(simd, &row.lower);
-                let along = Vec3x8::load(simd, &row.along);
+                mu = pulling::<S, F, D>(simd, mu);
+                lower = F::load(simd, &rows.lower, j - 1, stride);
+                // Of a spring that doesn't act, mu is zero.
+                let along = here - before;
                 if D::TURNS { (-mu.min(none), along * mu.max(none)) } else { (none, along * mu) }
             } else {
                 (none, closing_push)
             };
-            let w = lane(simd, &self.inverse_mass[j]);
+            let w = F::load(simd, self.inverse_mass, j, stride);
             let towards_after = tension_after;
             let pulled = place_after * towards_after + push - push_after;
-            let place = Vec3x8::load(simd, &self.position[j]) + pulled * w;
-            (tension_after, push_after) = (tension, push);
+            let place = here + pulled * w;
+            (tension_after, push_after, here) = (tension, push, before);
             if !D::TURNS {
-                place.store(&mut self.position[j]);
+                place.store_at(self.position, j, stride);
                 continue;
             }
             let inverse = one / (w * (tension + towards_after - towards_after * share_after) + one);
             (place_after, share_after) = (place * inverse, w * tension * inverse);
-            place_after.store(&mut self.position[j]);
-            rows[j].right = share_after.into();
+            place_after.store_at(self.position, j, stride);
+            share_after.store(&mut rows.right, j, stride);
         }
         if !D::TURNS {
             return;
         }
-        for (j, row) in rows.iter().enumerate().skip(1) {
-            let before = Vec3x8::load(simd, &self.position[j - 1]);
-            let place = Vec3x8::load(simd, &self.position[j]) + before * lane(simd, &row.right);
-            place.store(&mut self.position[j]);
+        let mut before = Vec3Wide::load_at(simd, self.position, 0, stride);
+        for j in 1..count {
+            let share = F::load(simd, &rows.right, j, stride);
+            before = Vec3Wide::load_at(simd, self.position, j, stride) + before * share;
+            before.store_at(self.position, j, stride);
         }
     }
 
-    /// Solves springs from each node to the one after the next. `rest` has a length for each node, m; where it is zero,
-    /// there is no spring.
+    /// Solves springs from each of `count` nodes to the one after the next. `rest` has a length for each node, m; where it
+    /// is zero, there is no spring.
     ///
     /// The first two of every four nodes are joined to the other two, and then the two after them: so no spring waits for
     /// another.
     #[inline(always)]
-    pub fn solve_bends<S: Simd, const DAMPED: bool>(&mut self, simd: S, rest: &[Lane], constants: Scaled) {
+    pub fn solve_bends<S: Simd, F: Wide<S>, const DAMPED: bool>(
+        &mut self,
+        simd: S,
+        count: usize,
+        rest: &[Lane],
+        constants: Scaled,
+    ) {
         for first in [0, 2] {
-            for four in (first..rest.len()).step_by(4) {
+            for four in (first..count).step_by(4) {
                 for j in four..four + 2 {
-                    if j + 2 < rest.len() {
-                        self.solve_pair::<S, DAMPED>(simd, j, j + 2, &rest[j], constants);
+                    if j + 2 < count {
+                        let rest = F::load(simd, rest, j, self.stride);
+                        let (a, b) = (self.end::<S, F, DAMPED>(simd, j), self.end::<S, F, DAMPED>(simd, j + 2));
+                        let [a, b] = solve_abreast::<_, _, DAMPED>(simd, a, b, rest, constants);
+                        a.store_at(self.position, j, self.stride);
+                        b.store_at(self.position, j + 2, self.stride);
                     }
                 }
             }
         }
     }
-
-    #[inline(always)]
-    fn solve_pair<S: Simd, const DAMPED: bool>(&mut self, simd: S, i: usize, j: usize, rest: &Lane, constants: Scaled) {
-        let (a, b) = (self.end::<S, DAMPED>(simd, i), self.end::<S, DAMPED>(simd, j));
-        let [a, b] = solve_eight::<S, DAMPED>(simd, a, b, lane(simd, rest), constants);
-        a.store(&mut self.position[i]);
-        b.store(&mut self.position[j]);
-    }
 }
 
-/// The row of eight springs. Those that aren't there, have no length or are slack where they only pull have no direction.
+/// The row of springs side by side. Those that aren't there, have no length or are slack where they only pull have no
+/// direction.
 #[inline(always)]
-fn spring<S: Simd, D: Side, const DAMPED: bool>(
+fn spring<S: Simd, F: Wide<S>, D: Side, const DAMPED: bool>(
     simd: S,
-    [here, next]: [End<S>; 2],
-    rest: &Lane,
+    [here, next]: [End<F>; 2],
+    rest: F,
     Yarn { stretch: Scaled { k, c }, give, .. }: Yarn,
-) -> Spring<S> {
-    let (none, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+) -> Spring<F> {
+    let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
     let softness = 1.0 / (k + c);
     let along = next.position - here.position;
     let squared = along.dot(along);
     let length = squared.sqrt();
-    let rest = if D::ONLY_PULLS { lane(simd, rest) * give } else { lane(simd, rest) };
-    let longer_than = if D::ONLY_PULLS { rest } else { f32x8::splat(simd, SHORTEST) };
+    let rest = if D::ONLY_PULLS { rest * give } else { rest };
+    let longer_than = if D::ONLY_PULLS { rest } else { F::splat(simd, SHORTEST) };
     let acts = rest.simd_gt(none) & length.simd_gt(longer_than);
     let mut right = length * (rest - length);
     if DAMPED {
@@ -274,7 +293,7 @@ fn spring<S: Simd, D: Side, const DAMPED: bool>(
         right = right * (k * softness) - along.dot(way) * (c * softness);
     }
     Spring {
-        along: along.or(acts, Vec3x8::splat(simd, [0.0; 3])),
+        along: along.or(acts, Vec3Wide::splat(simd, [0.0; 3])),
         diagonal: acts.select(squared * (here.inverse_mass + next.inverse_mass + softness), one),
         right: acts.select(right, none),
     }
@@ -282,6 +301,6 @@ fn spring<S: Simd, D: Side, const DAMPED: bool>(
 
 /// What a spring that only pulls may do.
 #[inline(always)]
-fn pulling<S: Simd, D: Side>(simd: S, mu: f32x8<S>) -> f32x8<S> {
-    if D::ONLY_PULLS { mu.min(f32x8::splat(simd, 0.0)) } else { mu }
+fn pulling<S: Simd, F: Wide<S>, D: Side>(simd: S, mu: F) -> F {
+    if D::ONLY_PULLS { mu.min(F::splat(simd, 0.0)) } else { mu }
 }

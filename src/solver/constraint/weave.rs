@@ -3,17 +3,17 @@
 //! Eight columns stand side by side in memory already. Eight rows are brought there by transposing their blocks, and
 //! back.
 
-use fearless_simd::{dispatch, f32x8, prelude::*};
+use fearless_simd::{dispatch, f32x8, f32x16, prelude::*};
 
 use super::{
-    spring::{End, Scaled, solve_eight},
-    strand::{Pack, Row, Side},
+    spring::{End, Scaled, solve_abreast},
+    strand::{Pack, Rows, Side},
 };
 use crate::solver::{
     Anchor, Lattice,
     lanes::{Block, Order},
     lattice::Threads,
-    simd::{Instructions, LANES, Lane, lane, transpose},
+    simd::{Instructions, LANES, Lane, Vec3x8, Wide, lane, transpose},
 };
 
 /// The particles of a lattice during a substep.
@@ -29,9 +29,19 @@ pub(in crate::solver) struct Sheet<'a> {
 /// Buffers for threads that are being solved.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Loom {
-    rows: Vec<Row>,
+    rows: Rows,
     position: Vec<Block>,
     previous: Vec<Block>,
+}
+
+impl Loom {
+    /// Makes room for as many nodes.
+    fn make_room(&mut self, count: usize) {
+        self.rows.make_room(count);
+        for blocks in [&mut self.position, &mut self.previous] {
+            blocks.resize(blocks.len().max(count), Block::default());
+        }
+    }
 }
 
 /// Constants of a thread's springs.
@@ -51,18 +61,22 @@ impl Yarn {
 }
 
 /// Inverse masses for eight rows side by side, column after column.
-pub(in crate::solver) fn masses_along_rows(lattice: &Lattice, inverse_mass: &[Lane], along_rows: &mut Vec<Lane>) {
-    along_rows.clear();
-    for first in (0..lattice.rows).step_by(LANES) {
-        let count = LANES.min(lattice.rows - first);
-        for column in inverse_mass.chunks_exact(lattice.rows) {
-            let rows = &column[first..first + count];
-            along_rows.extend(
-                (0..LANES)
-                    .map(|column| -> Lane { core::array::from_fn(|l| if l < count { rows[l][column] } else { 0.0 }) }),
-            );
+pub(in crate::solver) fn masses_along_rows(
+    lattice: &Lattice,
+    inverse_mass: &[Lane],
+    along_rows: &mut Vec<Lane>,
+    instructions: Instructions,
+) {
+    let nodes = lattice.along_rows.nodes;
+    along_rows.resize(nodes * lattice.rows.div_ceil(LANES), Lane::default());
+    dispatch!(instructions.level(), simd => {
+        for (pack, first) in along_rows.chunks_exact_mut(nodes).zip((0..).step_by(LANES)) {
+            let some = first..lattice.rows.min(first + LANES);
+            for (nodes, column) in pack.chunks_exact_mut(LANES).zip(inverse_mass.chunks_exact(lattice.rows)) {
+                across(simd, column[some.clone()].iter(), nodes.iter_mut());
+            }
         }
-    }
+    });
 }
 
 /// Which threads are solved last: they are held best.
@@ -98,9 +112,7 @@ pub(in crate::solver) fn solve<D: Side>(
     instructions: Instructions,
 ) {
     let nodes = lattice.along_rows.nodes;
-    loom.rows.resize(loom.rows.len().max(nodes).max(lattice.rows), Row::default());
-    loom.position.resize(nodes, Block::default());
-    loom.previous.resize(nodes, Block::default());
+    loom.make_room(2 * nodes.max(lattice.rows));
     let level = instructions.level();
     let order = match last {
         Last::Rows => [Last::Columns, Last::Rows],
@@ -133,11 +145,11 @@ fn solve_columns<S: Simd, D: Side, const DAMPED: bool>(
     loom: &mut Loom,
 ) {
     let rows = lattice.rows;
-    let columns = sheet.position.chunks_exact_mut(rows).zip(sheet.inverse_mass.chunks_exact(rows)).enumerate();
-    for (number, (position, inverse_mass)) in columns {
-        let previous = if DAMPED { &sheet.previous[number * rows..][..rows] } else { &[] };
-        let mut pack = Pack { position, previous, inverse_mass };
-        solve_pack::<S, D, DAMPED>(simd, &mut pack, &lattice.along_columns, number, yarn, &mut loom.rows);
+    let pairs = sheet.position.chunks_mut(2 * rows).zip(sheet.inverse_mass.chunks(2 * rows)).enumerate();
+    for (pair, (position, inverse_mass)) in pairs {
+        let previous = if DAMPED { &sheet.previous[pair * 2 * rows..][..position.len()] } else { &[] };
+        let mut pack = Pack { position, previous, inverse_mass, stride: rows };
+        solve_packs::<S, D, DAMPED>(simd, &mut pack, &lattice.along_columns, 2 * pair, yarn, &mut loom.rows);
     }
 }
 
@@ -151,59 +163,92 @@ fn solve_rows<S: Simd, D: Side, const DAMPED: bool>(
 ) {
     let rows = lattice.rows;
     let nodes = lattice.along_rows.nodes;
-    for (number, first) in (0..rows).step_by(LANES).enumerate() {
-        let some = first..(first + LANES).min(rows);
-        for (nodes, column) in loom.position.chunks_exact_mut(LANES).zip(sheet.position.chunks_exact(rows)) {
-            across(simd, &column[some.clone()], nodes);
-        }
-        if DAMPED {
-            for (nodes, column) in loom.previous.chunks_exact_mut(LANES).zip(sheet.previous.chunks_exact(rows)) {
-                across(simd, &column[some.clone()], nodes);
+    for first in (0..rows).step_by(2 * LANES) {
+        let packs = (first..rows.min(first + 2 * LANES)).step_by(LANES).map(|row| row..rows.min(row + LANES));
+        for (some, position) in packs.clone().zip(loom.position.chunks_exact_mut(nodes)) {
+            for (nodes, column) in position.chunks_exact_mut(LANES).zip(sheet.position.chunks_exact(rows)) {
+                blocks_across(simd, &column[some.clone()], nodes);
             }
         }
-        let inverse_mass = &sheet.row_masses[number * nodes..][..nodes];
-        let mut pack = Pack { position: &mut loom.position, previous: &loom.previous, inverse_mass };
-        solve_pack::<S, D, DAMPED>(simd, &mut pack, &lattice.along_rows, number, yarn, &mut loom.rows);
-        for (nodes, column) in loom.position.chunks_exact(LANES).zip(sheet.position.chunks_exact_mut(rows)) {
-            across(simd, nodes, &mut column[some.clone()]);
+        if DAMPED {
+            for (some, previous) in packs.clone().zip(loom.previous.chunks_exact_mut(nodes)) {
+                for (nodes, column) in previous.chunks_exact_mut(LANES).zip(sheet.previous.chunks_exact(rows)) {
+                    blocks_across(simd, &column[some.clone()], nodes);
+                }
+            }
+        }
+        let number = first / LANES;
+        let all = packs.len() * nodes;
+        let inverse_mass = &sheet.row_masses[number * nodes..][..all];
+        let mut pack =
+            Pack { position: &mut loom.position[..all], previous: &loom.previous, inverse_mass, stride: nodes };
+        solve_packs::<S, D, DAMPED>(simd, &mut pack, &lattice.along_rows, number, yarn, &mut loom.rows);
+        for (some, position) in packs.zip(loom.position.chunks_exact(nodes)) {
+            for (nodes, column) in position.chunks_exact(LANES).zip(sheet.position.chunks_exact_mut(rows)) {
+                blocks_across(simd, nodes, &mut column[some.clone()]);
+            }
         }
     }
 }
 
+/// Solves one or two packs of threads, from that with a `number` on.
 #[inline(always)]
-fn solve_pack<S: Simd, D: Side, const DAMPED: bool>(
+fn solve_packs<S: Simd, D: Side, const DAMPED: bool>(
     simd: S,
     pack: &mut Pack,
     threads: &Threads,
     number: usize,
     yarn: Yarn,
-    rows: &mut [Row],
+    rows: &mut Rows,
 ) {
+    if pack.position.len() > pack.stride {
+        solve_threads::<S, f32x16<S>, D, DAMPED>(simd, pack, threads, number, yarn, rows);
+    } else {
+        solve_threads::<S, f32x8<S>, D, DAMPED>(simd, pack, threads, number, yarn, rows);
+    }
+}
+
+#[inline(always)]
+fn solve_threads<S: Simd, F: Wide<S>, D: Side, const DAMPED: bool>(
+    simd: S,
+    pack: &mut Pack,
+    threads: &Threads,
+    number: usize,
+    yarn: Yarn,
+    rows: &mut Rows,
+) {
+    let of_packs = number * threads.nodes..(number + F::PACKS) * threads.nodes;
+    let count = threads.count;
     if let Some(bend) = yarn.bend {
-        pack.solve_bends::<S, DAMPED>(simd, threads.bend(number), bend);
+        pack.solve_bends::<S, F, DAMPED>(simd, count, &threads.bend[of_packs.clone()], bend);
     }
     // What comes last is held best: stretch shows more than bending.
     if yarn.stretch.acts() {
-        let rest = threads.stretch(number);
+        let rest = &threads.stretch[of_packs];
         if threads.closed {
-            pack.solve::<S, D, DAMPED, true>(simd, rest, yarn, rows);
+            pack.solve::<S, F, D, DAMPED, true>(simd, count, rest, yarn, rows);
         } else {
-            pack.solve::<S, D, DAMPED, false>(simd, rest, yarn, rows);
+            pack.solve::<S, F, D, DAMPED, false>(simd, count, rest, yarn, rows);
         }
     }
 }
 
 /// Turns up to eight blocks into up to eight others: lane i of block j becomes lane j of block i.
 #[inline(always)]
-fn across<S: Simd>(simd: S, from: &[Block], to: &mut [Block]) {
+fn blocks_across<S: Simd>(simd: S, from: &[Block], to: &mut [Block]) {
     for i in 0..3 {
-        let mut tile = [f32x8::splat(simd, 0.0); LANES];
-        for (values, block) in tile.iter_mut().zip(from) {
-            *values = lane(simd, &block[i]);
-        }
-        for (block, values) in to.iter_mut().zip(transpose(tile)) {
-            block[i] = values.into();
-        }
+        across(simd, from.iter().map(|block| &block[i]), to.iter_mut().map(|block| &mut block[i]));
+    }
+}
+
+#[inline(always)]
+fn across<'a, S: Simd>(simd: S, from: impl Iterator<Item = &'a Lane>, to: impl Iterator<Item = &'a mut Lane>) {
+    let mut tile = [f32x8::splat(simd, 0.0); LANES];
+    for (values, from) in tile.iter_mut().zip(from) {
+        *values = lane(simd, from);
+    }
+    for (to, values) in to.zip(transpose(tile)) {
+        *to = values.into();
     }
 }
 
@@ -249,8 +294,11 @@ fn solve_row_pair<S: Simd, const DAMPED: bool>(
     rows: usize,
     constants: Scaled,
 ) {
-    let end =
-        |sheet: &Sheet, at: usize| End::load::<DAMPED>(simd, sheet.position, sheet.previous, sheet.inverse_mass, at);
+    let end = |sheet: &Sheet, at: usize| {
+        let position = Vec3x8::load(simd, &sheet.position[at]);
+        let previous = if DAMPED { Vec3x8::load(simd, &sheet.previous[at]) } else { position };
+        End { position, previous, inverse_mass: lane(simd, &sheet.inverse_mass[at]) }
+    };
     let count = sheet.position.len();
     let mut here = end(sheet, to);
     // The first particle of the row is nobody's next one.
@@ -264,7 +312,7 @@ fn solve_row_pair<S: Simd, const DAMPED: bool>(
             inverse_mass: here.inverse_mass.slide::<1>(next.inverse_mass),
         };
         let rest = lane(simd, &rest[at + upper]);
-        let [a, b] = solve_eight::<S, DAMPED>(simd, end(sheet, at + from), ahead, rest, constants);
+        let [a, b] = solve_abreast::<_, _, DAMPED>(simd, end(sheet, at + from), ahead, rest, constants);
         a.store(&mut sheet.position[at + from]);
         moved_before.behind(b).store(&mut sheet.position[at + to]);
         (here, moved_before) = (next, b);
