@@ -58,6 +58,7 @@ fn hang(criterion: &mut Criterion) {
             obstacles: &[],
             fluid_density: air,
             winds: &[],
+            pool: None,
         };
         let mut scratch = Scratch::default();
         group.bench_function(BenchmarkId::new(name, n), |bencher| {

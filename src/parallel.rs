@@ -3,8 +3,13 @@
 use bevy::{
     ecs::query::{IterQueryData, QueryFilter},
     prelude::*,
-    tasks::ComputeTaskPool,
+    tasks::{ComputeTaskPool, TaskPool},
 };
+
+/// The task pool, where there is one and work may be done in `parallel`.
+pub(crate) fn pool(parallel: bool) -> Option<&'static TaskPool> {
+    ComputeTaskPool::try_get().filter(|_| parallel).map(|pool| &**pool)
+}
 
 /// Visits all matches of a query, side by side on the task pool where there is one.
 ///
@@ -20,7 +25,7 @@ pub(crate) fn for_each<D, F>(
     F: QueryFilter,
 {
     let visit = &visit;
-    match ComputeTaskPool::try_get().filter(|_| parallel) {
+    match pool(parallel) {
         Some(pool) => {
             pool.scope(|scope| query.iter_mut().for_each(|item| scope.spawn(async move { visit(item) })));
         }

@@ -1,6 +1,6 @@
 //! One step of every cloth: what was gathered goes in, the new state comes out.
 
-use bevy::{ecs::system::NonSendMarker, math::Vec3A, platform::time::Instant, prelude::*};
+use bevy::{ecs::system::NonSendMarker, math::Vec3A, platform::time::Instant, prelude::*, tasks::TaskPool};
 
 use crate::{
     cloth::{Cloth, ClothGravity, ClothReset, ClothSolver, ClothStatus, ResetCause},
@@ -28,14 +28,22 @@ pub(crate) fn step_cloths(
         warn_once!("ClothGravity isn't finite: cloth has no gravity until it is; set it to a finite acceleration");
         Vec3::ZERO
     };
+    let pool = parallel::pool(run.parallel);
     parallel::for_each(&mut cloths, run.parallel, |(status, mut state)| {
         if *status == ClothStatus::Ready {
-            step_cloth(&mut state, &time, gravity, &obstacles, &winds);
+            step_cloth(&mut state, &time, gravity, &obstacles, &winds, pool);
         }
     });
 }
 
-fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Obstacles, winds: &Winds) {
+fn step_cloth(
+    state: &mut ClothState,
+    time: &Time,
+    gravity: Vec3,
+    obstacles: &Obstacles,
+    winds: &Winds,
+    pool: Option<&TaskPool>,
+) {
     let Some(material) = state.material else { return };
     state.is_taken_back = false;
     // Paused: nothing is new to draw, and what pushes the cloth is kept until time goes on.
@@ -61,6 +69,7 @@ fn step_cloth(state: &mut ClothState, time: &Time, gravity: Vec3, obstacles: &Ob
         obstacles: near,
         fluid_density: state.settings.fluid_density,
         winds: felt,
+        pool,
     };
     state.step_start.clone_from(&state.particles.position);
     let begun = Instant::now();

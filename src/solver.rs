@@ -14,8 +14,10 @@ pub mod scratch;
 pub mod simd;
 pub mod topology;
 
+mod crew;
 mod integrate;
 mod lanes;
+mod share;
 mod step;
 
 pub mod constraint;

@@ -28,7 +28,7 @@ pub fn one_cloth(options: &Options) -> io::Result<Value> {
     let mut scratch = Scratch::default();
     let mut step = || {
         let mut particles = core::mem::take(&mut scene.particles);
-        solver::step(&mut particles, &scene.topology, &scene.context(options), &mut scratch);
+        solver::step(&mut particles, &scene.topology, &scene.context(options, None), &mut scratch);
         scene.particles = particles;
     };
     let [mut updates, mut empties, mut solvers, mut around] = [const { Vec::new() }; 4];

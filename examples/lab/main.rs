@@ -19,6 +19,7 @@ mod mesh;
 mod oracle;
 mod pins;
 mod scene;
+mod threads;
 
 use mesh::MeshSource;
 use oracle::Oracle;
@@ -61,6 +62,11 @@ enum Experiment {
         #[arg(long)]
         single_threaded: bool,
     },
+    /// What threads gain: one hanging cloth shared by them, against as many cloths as threads side by side
+    Threads {
+        #[command(flatten)]
+        options: Options,
+    },
     /// The same cloth falls on a sphere over a ground
     Drape {
         #[command(flatten)]
@@ -100,8 +106,8 @@ struct Options {
     /// Damping of the velocity, 1/s
     #[arg(long, default_value_t = 1.0)]
     damping: f32,
-    /// Threads; one cloth runs on one thread so far
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1))]
+    /// Threads that a large grid is shared by; with more than one, time is the wall clock's instead of the thread's own
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
     threads: u32,
     /// Writes the positions as text, a particle a line: x y z in m
     #[arg(long, value_name = "FILE")]
@@ -194,10 +200,11 @@ fn run(experiment: &Experiment) -> io::Result<Value> {
                 return Err(io::Error::other(need));
             }
             let scene = scene::hang(options, mesh, *pins)?;
-            let oracle = compare_oracle.then(|| Oracle::run(&scene, &scene.context(options)));
+            let oracle = compare_oracle.then(|| Oracle::run(&scene, &scene.context(options, None)));
             measure::run("hang", options, scene, oracle.as_ref())
         }
         Experiment::Drape { options, mesh } => measure::run("drape", options, scene::drape(options, mesh)?, None),
+        Experiment::Threads { options } => threads::compare(options),
         Experiment::App { options } => app::one_cloth(options),
         Experiment::Many { frames, single_threaded } => Ok(app::many_flags(*frames, *single_threaded)),
     }

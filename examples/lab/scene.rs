@@ -5,6 +5,7 @@ use std::{io, time::Instant};
 use bevy::{
     math::{Isometry3d, Mat3A, Vec3A, ops, primitives::InfinitePlane3d},
     prelude::*,
+    tasks::TaskPool,
 };
 use bevy_drape::{
     build,
@@ -50,8 +51,8 @@ impl Scene {
         if levels.is_empty() { "none".into() } else { levels.join(",") }
     }
 
-    /// What surrounds the cloth during a frame.
-    pub fn context(&self, options: &Options) -> StepContext<'_> {
+    /// What surrounds the cloth during a frame, with threads of `pool` to help.
+    pub fn context<'a>(&'a self, options: &Options, pool: Option<&'a TaskPool>) -> StepContext<'a> {
         StepContext {
             dt: FRAME,
             method: match options.solver {
@@ -71,6 +72,7 @@ impl Scene {
             obstacles: &self.obstacles,
             fluid_density: 0.0,
             winds: &[],
+            pool,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What surrounds a cloth during one step.
 
-use bevy::math::Vec3A;
+use bevy::{math::Vec3A, tasks::TaskPool};
 
 use super::{Effort, Grab, Material, Obstacle, Tethers, WindSource};
 
@@ -59,6 +59,8 @@ pub struct StepContext<'a> {
     pub fluid_density: f32,
     /// All winds that may reach the cloth.
     pub winds: &'a [WindSource],
+    /// Threads that may help with a large cloth. The bits are the same without.
+    pub pool: Option<&'a TaskPool>,
 }
 
 /// What a step did.

@@ -5,7 +5,7 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
     Lanes,
-    lanes::Points,
+    lanes::{Points, Run},
     simd::{Instructions, Vec3x8, lane},
 };
 
@@ -24,27 +24,41 @@ pub(super) struct Motion<'a> {
 
 /// Symplectic Euler: velocities from forces (N) and gravity (m/s²), then positions from the new velocities.
 pub(super) fn predict(lanes: &mut Lanes, motion: Motion, instructions: Instructions) {
-    dispatch!(instructions.level(), simd => predict_eights(simd, lanes, motion));
+    // What was the position is what it was before.
+    core::mem::swap(&mut lanes.position, &mut lanes.previous);
+    dispatch!(instructions.level(), simd => predict_eights(simd, &mut lanes.whole(), motion));
 }
 
 #[inline(always)]
-fn predict_eights<S: Simd>(simd: S, lanes: &mut Lanes, Motion { gravity, force, decay, h }: Motion) {
-    // What was the position is what it was before.
-    core::mem::swap(&mut lanes.position, &mut lanes.previous);
-    let pull = Vec3x8::splat(simd, (gravity * h).to_array());
-    let (decay, duration) = (f32x8::splat(simd, decay), f32x8::splat(simd, h));
-    let Lanes { position, previous, velocity, inverse_mass, .. } = lanes;
-    let all = position.0.iter_mut().zip(&previous.0).zip(&mut velocity.0).zip(inverse_mass);
+fn predict_eights<S: Simd>(simd: S, run: &mut Run, motion: Motion) {
+    let all = run.position.iter_mut().zip(&*run.previous).zip(&mut *run.velocity).zip(run.inverse_mass);
     for (i, (((position, previous), velocity), w)) in all.enumerate() {
         let (place, before) = (Vec3x8::load(simd, previous), Vec3x8::load(simd, velocity));
-        let w = lane(simd, w);
+        let (place, velocity_after) = motion.of(simd, run.first + i, place, before, lane(simd, w));
+        place.store(position);
+        velocity_after.store(velocity);
+    }
+}
+
+impl Motion<'_> {
+    /// Where the particles of a block come, and how fast they are then. Fixed ones stay.
+    #[inline(always)]
+    fn of<S: Simd>(
+        &self,
+        simd: S,
+        block: usize,
+        place: Vec3x8<S>,
+        before: Vec3x8<S>,
+        w: f32x8<S>,
+    ) -> (Vec3x8<S>, Vec3x8<S>) {
+        let pull = Vec3x8::splat(simd, (self.gravity * self.h).to_array());
+        let (decay, duration) = (f32x8::splat(simd, self.decay), f32x8::splat(simd, self.h));
         let mut after = before * decay + pull;
-        if let Some(force) = force {
-            after = after + Vec3x8::load(simd, &force.0[i]) * (w * duration);
+        if let Some(force) = self.force {
+            after = after + Vec3x8::load(simd, &force.0[block]) * (w * duration);
         }
         let is_free = w.simd_gt(f32x8::splat(simd, 0.0));
-        after.or(is_free, before).store(velocity);
-        (place + after * duration).or(is_free, place).store(position);
+        ((place + after * duration).or(is_free, place), after.or(is_free, before))
     }
 }
 
@@ -57,30 +71,46 @@ pub(super) struct SpeedLimit {
     pub most: f32,
 }
 
-/// Velocities from the way that the particles went within a substep of `h` seconds.
+/// What comes after the constraints of a substep.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Finish<'a> {
+    pub limit: SpeedLimit,
+    /// Duration of the substep, s.
+    pub h: f32,
+    /// The free motion of the next substep, where it can follow at once: each particle is then loaded once for both.
+    pub next: Option<Motion<'a>>,
+}
+
+/// Velocities from the way that the particles went within a substep, and the motion that follows.
 ///
 /// That is (position - previous) / h, written as what the constraints have added to the integrated velocity: a way of
 /// g h² is lost to rounding when h is small, a change of speed of g h isn't.
-pub(super) fn derive_velocities(lanes: &mut Lanes, limit: SpeedLimit, h: f32, instructions: Instructions) {
-    dispatch!(instructions.level(), simd => derive_eights(simd, lanes, limit, h));
+pub(super) fn finish(run: &mut Run, finish: Finish, instructions: Instructions) {
+    dispatch!(instructions.level(), simd => finish_eights(simd, run, finish));
 }
 
 #[inline(always)]
-fn derive_eights<S: Simd>(simd: S, lanes: &mut Lanes, limit: SpeedLimit, h: f32) {
-    let Lanes { position, previous, velocity, inverse_mass, .. } = lanes;
+fn finish_eights<S: Simd>(simd: S, run: &mut Run, Finish { limit, h, next }: Finish) {
     let around = Vec3x8::splat(simd, limit.around.to_array());
     let (duration, rate) = (f32x8::splat(simd, h), f32x8::splat(simd, 1.0 / h));
     let most = f32x8::splat(simd, limit.most);
-    let all = position.0.iter().zip(&previous.0).zip(&mut velocity.0).zip(inverse_mass);
-    for (((position, previous), velocity), w) in all {
+    let all = run.position.iter_mut().zip(&mut *run.previous).zip(&mut *run.velocity).zip(run.inverse_mass);
+    for (i, (((position, previous), velocity), w)) in all.enumerate() {
+        let (place, w) = (Vec3x8::load(simd, position), lane(simd, w));
         let before = Vec3x8::load(simd, velocity);
         let predicted = Vec3x8::load(simd, previous) + before * duration;
-        let mut after = before + (Vec3x8::load(simd, position) - predicted) * rate;
+        let mut after = before + (place - predicted) * rate;
         let relative = after - around;
         let squared = relative.dot(relative);
-        let too_fast = lane(simd, w).simd_gt(f32x8::splat(simd, 0.0)) & squared.simd_gt(most * most);
+        let too_fast = w.simd_gt(f32x8::splat(simd, 0.0)) & squared.simd_gt(most * most);
         if too_fast.any_true() {
             after = (around + relative * (most / squared.sqrt())).or(too_fast, after);
+        }
+        if let Some(motion) = next {
+            place.store(previous);
+            let (next_place, next_velocity) = motion.of(simd, run.first + i, place, after, w);
+            next_place.store(position);
+            after = next_velocity;
         }
         after.store(velocity);
     }

@@ -9,6 +9,10 @@ use super::{
     simd::{Instructions, LANES, Lane, lane},
 };
 
+/// Rows that are taken over at a time. Those of a large cloth are a page of memory each: more of them at once than the
+/// processor has pages at hand is slow.
+const NEAR_ROWS: usize = 16;
+
 /// Eight points or directions: all x, all y, all z.
 pub type Block = [Lane; 3];
 
@@ -66,6 +70,20 @@ impl Order {
         })
     }
 
+    /// Number, first particle and number of particles of each block, a few rows at a time: what is next to each other
+    /// among the particles and among the blocks is visited within a short time.
+    #[inline(always)]
+    fn near_blocks(self) -> impl Iterator<Item = (usize, usize, usize)> {
+        let Self { rows, columns } = self;
+        (0..rows).step_by(NEAR_ROWS).flat_map(move |near| {
+            (0..columns).step_by(LANES).flat_map(move |column| {
+                let count = LANES.min(columns - column);
+                let block = move |row: usize| (column / LANES * rows + row, row * columns + column, count);
+                (near..rows.min(near + NEAR_ROWS)).map(block)
+            })
+        })
+    }
+
     /// The particle in each lane of a block, if there is one.
     pub fn particles(self) -> impl Iterator<Item = [Option<u32>; LANES]> {
         self.blocks().map(|(first, count)| core::array::from_fn(|l| (l < count).then_some((first + l) as u32)))
@@ -106,7 +124,7 @@ impl Points {
 
     #[inline(always)]
     fn load_blocks<S: Simd>(&mut self, simd: S, order: Order, points: &[Vec3A]) {
-        for ((first, count), block) in order.blocks().zip(&mut self.0) {
+        for (block, first, count) in order.near_blocks() {
             let points = &points[first..first + count];
             let mut rows = [[0.0; 4]; LANES];
             for (row, &point) in rows.iter_mut().zip(points) {
@@ -114,7 +132,7 @@ impl Points {
             }
             let [a, b, c, d, e, f, g, h] = &rows;
             let [x, y, z, _] = apart(simd, [a, b, c, d, e, f, g, h]);
-            *block = [x.into(), y.into(), z.into()];
+            self.0[block] = [x.into(), y.into(), z.into()];
         }
     }
 
@@ -125,8 +143,8 @@ impl Points {
 
     #[inline(always)]
     fn store_blocks<S: Simd>(&self, simd: S, order: Order, points: &mut [Vec3A]) {
-        for ((first, count), block) in order.blocks().zip(&self.0) {
-            let [x, y, z] = block;
+        for (block, first, count) in order.near_blocks() {
+            let [x, y, z] = &self.0[block];
             let (x, y, z) = (lane(simd, x), lane(simd, y), lane(simd, z));
             let rows = together([x, y, z, z]);
             for (point, row) in points[first..first + count].iter_mut().zip(rows) {
@@ -189,7 +207,8 @@ impl Lanes {
         self.position.load(order, &particles.position, instructions);
         self.velocity.load(order, &particles.velocity, instructions);
         self.inverse_mass.resize(order.block_count(), Lane::default());
-        for ((first, count), lane) in order.blocks().zip(&mut self.inverse_mass) {
+        for (block, first, count) in order.near_blocks() {
+            let lane = &mut self.inverse_mass[block];
             let masses = &particles.inverse_mass[first..first + count];
             match masses.as_array() {
                 Some(masses) => *lane = *masses,
@@ -216,6 +235,43 @@ impl Lanes {
     /// Number of slots.
     pub fn slot_count(&self) -> usize {
         self.inverse_mass.len() * LANES
+    }
+}
+
+/// Some blocks of a cloth, one after the other.
+#[derive(Debug)]
+pub(super) struct Run<'a> {
+    /// Number of the first block.
+    pub first: usize,
+    /// Position, m.
+    pub position: &'a mut [Block],
+    /// Position at the start of the substep, m.
+    pub previous: &'a mut [Block],
+    /// Velocity, m/s.
+    pub velocity: &'a mut [Block],
+    /// Inverse mass, 1/kg.
+    pub inverse_mass: &'a [Lane],
+}
+
+impl Lanes {
+    /// All blocks.
+    pub(super) fn whole(&mut self) -> Run<'_> {
+        let Self { position, previous, velocity, inverse_mass, .. } = self;
+        Run { first: 0, position: &mut position.0, previous: &mut previous.0, velocity: &mut velocity.0, inverse_mass }
+    }
+
+    /// All blocks, in parts of `count`.
+    pub(super) fn parts(&mut self, count: usize) -> impl Iterator<Item = Run<'_>> {
+        let Run { position, previous, velocity, inverse_mass, .. } = self.whole();
+        let moving = position.chunks_mut(count).zip(previous.chunks_mut(count)).zip(velocity.chunks_mut(count));
+        let all = (0..).step_by(count).zip(moving).zip(inverse_mass.chunks(count));
+        all.map(|((first, ((position, previous), velocity)), inverse_mass)| Run {
+            first,
+            position,
+            previous,
+            velocity,
+            inverse_mass,
+        })
     }
 }
 

@@ -7,6 +7,7 @@ use super::{
     constraint::{level::Levels, spring::Beads, tether::PinPlaces, weave::Loom},
     force::wind::Air,
     lanes::Points,
+    share::Shares,
     simd::Lane,
 };
 
@@ -37,4 +38,6 @@ pub struct Scratch {
     pub(super) levels: Levels,
     /// The pins that hold tethers.
     pub(super) pins: PinPlaces,
+    /// Shares of the threads in a large cloth.
+    pub(super) shares: Shares,
 }

@@ -1,20 +1,25 @@
 //! The loop over the substeps.
 
-use bevy::math::{Vec3A, ops};
+use bevy::{
+    math::{Vec3A, ops},
+    tasks::TaskPool,
+};
 
 use super::{
-    LevelPass, Method, Particles, Scratch, StepContext, StepReport, Topology,
+    Lattice, LevelPass, Method, Particles, Scratch, StepContext, StepReport, Tethers, Topology,
     constraint::{
         anchor, grab,
         level::LevelRun,
         spring::{self, Scaled},
         strand::Both,
         tether,
-        weave::{self, Last, Sheet, Yarn},
+        weave::{self, Last, Sheet, Weave, Yarn},
     },
     contact, explicit,
     force::wind,
-    integrate::{self, Motion, SpeedLimit},
+    integrate::{self, Finish, Motion, SpeedLimit},
+    lanes::Points,
+    share::{self, Work},
     topology::SpringKind,
 };
 
@@ -57,14 +62,16 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     let substeps = needed_substeps.min(most);
     let is_pushed = wind::feels_air(ctx) || particles.is_pushed();
     let last = Last::between(ctx.anchors, topology.order());
-    let substep = Substep { topology, ctx, h: dt / substeps as f32, stiffness_scale, is_pushed, last, levels };
     let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
     let limit = SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most };
+    let h = dt / substeps as f32;
+    let substep = Substep { topology, ctx, h, stiffness_scale, is_pushed, is_near, limit, last, levels };
     let air_interval = ((1.0 / (AIR_RATE * substep.h)) as u32).max(1);
     let mut contacts = 0;
 
     scratch.air.sample(particles, ctx);
     substep.prepare(scratch);
+    let mut has_moved = false;
     for i in 0..substeps {
         let span = i as f32 / substeps as f32..(i + 1) as f32 / substeps as f32;
         if i % air_interval == 0 {
@@ -74,15 +81,21 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         if ctx.method == Method::Explicit {
             substep.add_spring_forces(particles, scratch);
         }
-        substep.move_freely(scratch);
+        if !has_moved {
+            substep.move_freely(scratch);
+        }
         anchor::advance(&mut scratch.lanes, ctx.anchors, span.end, dt);
         if let Some(tethers) = ctx.tethers {
             scratch.pins.read(tethers, &scratch.lanes);
         }
+        // Hands, and forces that are renewed, come first.
+        let goes_on = i + 1 < substeps && ctx.grabs.is_empty() && !(is_pushed && (i + 1) % air_interval == 0);
+        has_moved = goes_on && ctx.method != Method::Explicit;
+        let mut is_finished = false;
         match ctx.method {
             Method::Strands => {
                 grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
-                substep.solve_strands(scratch);
+                is_finished = substep.solve_strands(scratch, has_moved);
             }
             Method::Xpbd => {
                 substep.solve_springs(scratch);
@@ -96,8 +109,9 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
             contacts = contact::project(&mut scratch.lanes, ctx.obstacles, &ctx.material, span);
         }
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
-        if ctx.method != Method::Explicit || contacts > 0 || !ctx.grabs.is_empty() {
-            integrate::derive_velocities(&mut scratch.lanes, limit, substep.h, instructions);
+        if !is_finished && (ctx.method != Method::Explicit || contacts > 0 || !ctx.grabs.is_empty()) {
+            let Scratch { lanes, applied_force, .. } = &mut *scratch;
+            integrate::finish(&mut lanes.whole(), substep.finish(applied_force, has_moved), instructions);
         }
     }
     scratch.lanes.store(particles, instructions);
@@ -116,6 +130,9 @@ struct Substep<'a> {
     stiffness_scale: f32,
     /// Whether anything but gravity acts.
     is_pushed: bool,
+    /// Whether anything is so near that it may be touched.
+    is_near: bool,
+    limit: SpeedLimit,
     last: Last,
     levels: &'a [LevelPass],
 }
@@ -124,8 +141,11 @@ impl Substep<'_> {
     /// Works out what doesn't change from substep to substep.
     fn prepare(&self, scratch: &mut Scratch) {
         if let (Method::Strands, Some(lattice)) = (self.ctx.method, &self.topology.lattice) {
-            let Scratch { lanes, row_masses, instructions, .. } = scratch;
+            let Scratch { lanes, row_masses, shares, instructions, .. } = scratch;
             weave::masses_along_rows(lattice, &lanes.inverse_mass, row_masses, *instructions);
+            if self.helpers().is_some() {
+                shares.fit(lattice, &lanes.inverse_mass);
+            }
         }
         if let Some(run) = self.levels(scratch) {
             scratch.levels.fit(&run, &scratch.lanes);
@@ -159,17 +179,46 @@ impl Substep<'_> {
     /// Moves the particles as if nothing held them together.
     fn move_freely(&self, scratch: &mut Scratch) {
         let Scratch { lanes, applied_force, instructions, .. } = scratch;
-        let decay = ops::exp(-self.ctx.material.damping * self.h);
-        let is_applied = self.is_pushed || self.ctx.method == Method::Explicit;
-        let force = is_applied.then_some(&*applied_force);
-        integrate::predict(lanes, Motion { gravity: self.ctx.gravity, force, decay, h: self.h }, *instructions);
+        integrate::predict(lanes, self.motion(applied_force), *instructions);
     }
 
-    /// Coarse levels, tethers, and then the springs: threads as strands, the last and best held.
-    fn solve_strands(&self, scratch: &mut Scratch) {
+    fn motion<'a>(&self, force: &'a Points) -> Motion<'a> {
+        let decay = ops::exp(-self.ctx.material.damping * self.h);
+        let is_applied = self.is_pushed || self.ctx.method == Method::Explicit;
+        Motion { gravity: self.ctx.gravity, force: is_applied.then_some(force), decay, h: self.h }
+    }
+
+    /// What ends the substep, and begins the next one where that `goes_on` at once.
+    fn finish<'a>(&self, force: &'a Points, goes_on: bool) -> Finish<'a> {
+        Finish { limit: self.limit, h: self.h, next: goes_on.then(|| self.motion(force)) }
+    }
+
+    /// Coarse levels, tethers, and then the springs: threads as strands, the last and best held. Of a large cloth threads
+    /// also finish the substep: true where they did.
+    fn solve_strands(&self, scratch: &mut Scratch, goes_on: bool) -> bool {
         if let Some(run) = self.levels(scratch) {
             let Scratch { lanes, loom, pins, levels, .. } = scratch;
             levels.solve(&run, lanes, pins, loom);
+        }
+        let scaled = |kind| Scaled::new(self.ctx.material.spring(kind), self.h);
+        let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
+        let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
+        if let Some((pool, lattice)) = self.helpers() {
+            let Scratch { lanes, row_masses, pins, shares, applied_force, instructions, .. } = scratch;
+            grab::solve_tethers(lanes, self.ctx.grabs, self.ctx.tether_slack);
+            let finish = (!self.is_near).then(|| self.finish(applied_force, goes_on));
+            let work = Work {
+                weave: Weave { lattice, yarn, instructions: *instructions },
+                shear: scaled(SpringKind::Shear),
+                last: self.last,
+                row_masses,
+                tethers: self.ctx.tethers.map_or(&[], Tethers::of_cloth),
+                pins,
+                slack: self.ctx.tether_slack,
+                finish,
+            };
+            shares.solve(pool, lanes, &work);
+            return finish.is_some();
         }
         self.solve_tethers(scratch);
         let Scratch { lanes, beads, loom, row_masses, instructions, .. } = scratch;
@@ -177,18 +226,23 @@ impl Substep<'_> {
         let loose = self.topology.batches.iter().filter(|batch| !batch.woven);
         spring::solve(lanes, self.topology, loose, material, h, beads, *instructions);
         if let Some(lattice) = &self.topology.lattice {
-            let scaled = |kind| Scaled::new(material.spring(kind), h);
             let mut sheet = Sheet {
                 position: &mut lanes.position.0,
                 previous: &lanes.previous.0,
                 inverse_mass: &lanes.inverse_mass,
                 row_masses,
             };
-            weave::solve_diagonals(&mut sheet, lattice, scaled(SpringKind::Shear), *instructions);
-            let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
-            let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
-            weave::solve::<Both>(&mut sheet, lattice, yarn, self.last, loom, *instructions);
+            weave::solve_diagonals(&mut sheet, 0, lattice, scaled(SpringKind::Shear), *instructions);
+            Weave { lattice, yarn, instructions: *instructions }.solve::<Both>(&mut sheet, self.last, loom);
         }
+        false
+    }
+
+    /// The threads that share the work, where it pays and all springs are on the lattice.
+    fn helpers(&self) -> Option<(&TaskPool, &Lattice)> {
+        let is_woven = self.topology.batches.iter().all(|batch| batch.woven);
+        let is_large = self.topology.particle_count() >= share::LARGE;
+        self.ctx.pool.zip(self.topology.lattice.as_ref()).filter(|_| is_large && is_woven)
     }
 
     /// All springs, colour after colour.
@@ -204,7 +258,7 @@ impl Substep<'_> {
         grab::solve_tethers(lanes, self.ctx.grabs, self.ctx.tether_slack);
         if let Some(tethers) = self.ctx.tethers {
             let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
-            tether::solve(position, inverse_mass, tethers.of_cloth(), pins, self.ctx.tether_slack, *instructions);
+            tether::solve(position, inverse_mass, 0, tethers.of_cloth(), pins, self.ctx.tether_slack, *instructions);
         }
     }
 

@@ -136,6 +136,7 @@ impl Bed {
             obstacles: &self.obstacles,
             fluid_density: self.fluid_density,
             winds: &self.winds,
+            pool: None,
         };
         step(&mut self.particles, &self.topology, &ctx, &mut self.scratch)
     }

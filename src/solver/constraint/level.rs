@@ -22,7 +22,7 @@ use super::{
     spring::Scaled,
     strand::Pull,
     tether::{self, PinPlaces, TetherBlock},
-    weave::{self, Last, Loom, Sheet, Yarn},
+    weave::{self, Last, Loom, Sheet, Weave, Yarn},
 };
 use crate::solver::{
     Lanes, Level, LevelPass, Tethers,
@@ -169,12 +169,13 @@ impl Nodes {
 
     fn iterate(&mut self, level: &Level, run: &LevelRun, tethers: &[TetherBlock], pins: &PinPlaces, loom: &mut Loom) {
         let position = &mut self.position.0;
-        tether::solve(position, &self.inverse_mass, tethers, pins, run.slack, run.instructions);
+        tether::solve(position, &self.inverse_mass, 0, tethers, pins, run.slack, run.instructions);
         let mut sheet =
             Sheet { position, previous: &self.way.0, inverse_mass: &self.inverse_mass, row_masses: &self.row_masses };
         let yarn =
             Yarn { stretch: Scaled { c: 0.0, ..run.stretch }, bend: None, give: 1.0 + (run.slack - TAUTER).max(0.0) };
-        weave::solve::<Pull>(&mut sheet, &level.lattice, yarn, run.last, loom, run.instructions);
+        let weave = Weave { lattice: &level.lattice, yarn, instructions: run.instructions };
+        weave.solve::<Pull>(&mut sheet, run.last, loom);
     }
 
     /// Works out how far the nodes went.

@@ -182,16 +182,21 @@ impl PinPlaces {
     }
 }
 
-/// Pulls every particle that is too far out back to the end of its tether.
+/// Pulls every particle that is too far out back to the end of its tether: those of the blocks from that with the number
+/// `first` on, which are all that is given. `tethers` are those of all blocks.
 pub(in crate::solver) fn solve(
     position: &mut [Block],
     inverse_mass: &[Lane],
+    first: usize,
     tethers: &[TetherBlock],
     pins: &PinPlaces,
     slack: f32,
     instructions: Instructions,
 ) {
-    dispatch!(instructions.level(), simd => solve_blocks(simd, position, inverse_mass, tethers, &pins.0, slack));
+    let before = |block: usize| tethers.partition_point(|tether| (tether.block as usize) < block);
+    let tethers = &tethers[before(first)..before(first + position.len())];
+    let pins = &pins.0;
+    dispatch!(instructions.level(), simd => solve_blocks(simd, position, inverse_mass, first, tethers, pins, slack));
 }
 
 #[inline(always)]
@@ -199,12 +204,13 @@ fn solve_blocks<S: Simd>(
     simd: S,
     position: &mut [Block],
     inverse_mass: &[Lane],
+    first: usize,
     tethers: &[TetherBlock],
     pins: &[[f32; 3]],
     slack: f32,
 ) {
     for tether in tethers {
-        let at = tether.block as usize;
+        let at = tether.block as usize - first;
         let place = Vec3x8::load(simd, &position[at]);
         let pin = match tether.only_pin {
             Some(pin) => Vec3x8::splat(simd, pins[pin as usize]),

@@ -3,6 +3,8 @@
 //! Eight columns stand side by side in memory already. Eight rows are brought there by transposing their blocks, and
 //! back.
 
+use core::ops::Range;
+
 use fearless_simd::{dispatch, f32x8, f32x16, prelude::*};
 
 use super::{
@@ -25,6 +27,9 @@ pub(in crate::solver) struct Sheet<'a> {
     /// The same, as [`masses_along_rows`] gives them.
     pub row_masses: &'a [Lane],
 }
+
+/// Rows that are solved side by side: two packs.
+pub(in crate::solver) const ROWS: usize = 2 * LANES;
 
 /// Buffers for threads that are being solved.
 #[derive(Clone, Debug, Default)]
@@ -87,6 +92,14 @@ pub(in crate::solver) enum Last {
 }
 
 impl Last {
+    /// Both, in their order.
+    pub fn order(self) -> [Self; 2] {
+        match self {
+            Self::Rows => [Self::Columns, Self::Rows],
+            Self::Columns => [Self::Rows, Self::Columns],
+        }
+    }
+
     /// The threads that carry the most: those that go from pin to pin where few pins are far apart, and those that hang
     /// from them where pins stand close.
     pub fn between(anchors: &[Anchor], order: Order) -> Self {
@@ -102,109 +115,136 @@ impl Last {
     }
 }
 
-/// Solves all columns and all rows.
-pub(in crate::solver) fn solve<D: Side>(
-    sheet: &mut Sheet,
-    lattice: &Lattice,
-    yarn: Yarn,
-    last: Last,
-    loom: &mut Loom,
-    instructions: Instructions,
-) {
-    let nodes = lattice.along_rows.nodes;
-    loom.make_room(2 * nodes.max(lattice.rows));
-    let level = instructions.level();
-    let order = match last {
-        Last::Rows => [Last::Columns, Last::Rows],
-        Last::Columns => [Last::Rows, Last::Columns],
-    };
-    for threads in order {
-        match (threads, yarn.is_damped()) {
-            (Last::Columns, false) => {
-                dispatch!(level, simd => solve_columns::<_, D, false>(simd, sheet, lattice, yarn, loom));
-            }
-            (Last::Columns, true) => {
-                dispatch!(level, simd => solve_columns::<_, D, true>(simd, sheet, lattice, yarn, loom));
-            }
-            (Last::Rows, false) => {
-                dispatch!(level, simd => solve_rows::<_, D, false>(simd, sheet, lattice, yarn, loom));
-            }
-            (Last::Rows, true) => {
-                dispatch!(level, simd => solve_rows::<_, D, true>(simd, sheet, lattice, yarn, loom));
-            }
-        }
-    }
+/// How the threads of a lattice are solved.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Weave<'a> {
+    pub lattice: &'a Lattice,
+    pub yarn: Yarn,
+    pub instructions: Instructions,
 }
 
-#[inline(always)]
-fn solve_columns<S: Simd, D: Side, const DAMPED: bool>(
-    simd: S,
-    sheet: &mut Sheet,
-    lattice: &Lattice,
-    yarn: Yarn,
-    loom: &mut Loom,
-) {
-    let rows = lattice.rows;
-    let pairs = sheet.position.chunks_mut(2 * rows).zip(sheet.inverse_mass.chunks(2 * rows)).enumerate();
-    for (pair, (position, inverse_mass)) in pairs {
-        let previous = if DAMPED { &sheet.previous[pair * 2 * rows..][..position.len()] } else { &[] };
-        let mut pack = Pack { position, previous, inverse_mass, stride: rows };
-        solve_packs::<S, D, DAMPED>(simd, &mut pack, &lattice.along_columns, 2 * pair, yarn, &mut loom.rows);
-    }
-}
-
-#[inline(always)]
-fn solve_rows<S: Simd, D: Side, const DAMPED: bool>(
-    simd: S,
-    sheet: &mut Sheet,
-    lattice: &Lattice,
-    yarn: Yarn,
-    loom: &mut Loom,
-) {
-    let rows = lattice.rows;
-    let nodes = lattice.along_rows.nodes;
-    for first in (0..rows).step_by(2 * LANES) {
-        let packs = (first..rows.min(first + 2 * LANES)).step_by(LANES).map(|row| row..rows.min(row + LANES));
-        for (some, position) in packs.clone().zip(loom.position.chunks_exact_mut(nodes)) {
-            for (nodes, column) in position.chunks_exact_mut(LANES).zip(sheet.position.chunks_exact(rows)) {
-                blocks_across(simd, &column[some.clone()], nodes);
-            }
-        }
-        if DAMPED {
-            for (some, previous) in packs.clone().zip(loom.previous.chunks_exact_mut(nodes)) {
-                for (nodes, column) in previous.chunks_exact_mut(LANES).zip(sheet.previous.chunks_exact(rows)) {
-                    blocks_across(simd, &column[some.clone()], nodes);
+impl Weave<'_> {
+    /// Solves all columns and all rows.
+    pub fn solve<D: Side>(&self, sheet: &mut Sheet, last: Last, loom: &mut Loom) {
+        for threads in last.order() {
+            match threads {
+                Last::Columns => {
+                    self.solve_columns::<D>(sheet.position, sheet.previous, sheet.inverse_mass, 0, loom);
+                }
+                Last::Rows => {
+                    for first in (0..self.lattice.rows).step_by(ROWS) {
+                        self.take_rows(sheet.position, sheet.previous, 0, first, loom);
+                        self.solve_rows::<D>(sheet.row_masses, first, loom);
+                        self.put_rows(loom, sheet.position, 0, first);
+                    }
                 }
             }
         }
-        let number = first / LANES;
-        let all = packs.len() * nodes;
-        let inverse_mass = &sheet.row_masses[number * nodes..][..all];
-        let mut pack =
-            Pack { position: &mut loom.position[..all], previous: &loom.previous, inverse_mass, stride: nodes };
-        solve_packs::<S, D, DAMPED>(simd, &mut pack, &lattice.along_rows, number, yarn, &mut loom.rows);
-        for (some, position) in packs.zip(loom.position.chunks_exact(nodes)) {
-            for (nodes, column) in position.chunks_exact(LANES).zip(sheet.position.chunks_exact_mut(rows)) {
-                blocks_across(simd, nodes, &mut column[some.clone()]);
+    }
+
+    /// Solves the columns of the packs from that with the number `first_pack` on, which are all that is given.
+    pub fn solve_columns<D: Side>(
+        &self,
+        position: &mut [Block],
+        previous: &[Block],
+        inverse_mass: &[Lane],
+        first_pack: usize,
+        loom: &mut Loom,
+    ) {
+        let stride = self.lattice.rows;
+        loom.make_room(2 * stride);
+        let masses = inverse_mass.chunks(2 * stride);
+        let pairs = position.chunks_mut(2 * stride).zip(previous.chunks(2 * stride)).zip(masses);
+        for (number, ((position, previous), inverse_mass)) in (first_pack..).step_by(2).zip(pairs) {
+            let mut pack = Pack { position, previous, inverse_mass, stride };
+            self.solve_packs::<D>(&mut pack, &self.lattice.along_columns, number, &mut loom.rows);
+        }
+    }
+
+    /// Takes up to sixteen rows from the `first` on to the loom, as far as they are in the packs from that with the number
+    /// `first_pack` on, which are given.
+    pub fn take_rows(&self, position: &[Block], previous: &[Block], first_pack: usize, first: usize, loom: &mut Loom) {
+        loom.make_room(2 * self.lattice.along_rows.nodes);
+        let (level, lattice) = (self.instructions.level(), self.lattice);
+        dispatch!(level, simd => take_rows(simd, position, first_pack, lattice, first, &mut loom.position));
+        if self.yarn.is_damped() {
+            dispatch!(level, simd => take_rows(simd, previous, first_pack, lattice, first, &mut loom.previous));
+        }
+    }
+
+    /// Solves the rows that were taken. `row_masses` are those of all rows.
+    pub fn solve_rows<D: Side>(&self, row_masses: &[Lane], first: usize, loom: &mut Loom) {
+        let (nodes, number) = (self.lattice.along_rows.nodes, first / LANES);
+        let count = row_packs(self.lattice, first).len() * nodes;
+        let Loom { rows, position, previous } = loom;
+        let inverse_mass = &row_masses[number * nodes..][..count];
+        let mut pack = Pack { position: &mut position[..count], previous, inverse_mass, stride: nodes };
+        self.solve_packs::<D>(&mut pack, &self.lattice.along_rows, number, rows);
+    }
+
+    /// Puts rows back to where they were taken from.
+    pub fn put_rows(&self, loom: &Loom, position: &mut [Block], first_pack: usize, first: usize) {
+        let (level, lattice) = (self.instructions.level(), self.lattice);
+        dispatch!(level, simd => put_rows(simd, &loom.position, position, first_pack, lattice, first));
+    }
+
+    /// Solves one or two packs of threads, from that with a `number` on.
+    fn solve_packs<D: Side>(&self, pack: &mut Pack, threads: &Threads, number: usize, rows: &mut Rows) {
+        let (level, yarn) = (self.instructions.level(), self.yarn);
+        match (pack.position.len() > pack.stride, yarn.is_damped()) {
+            (true, false) => {
+                dispatch!(level, simd => solve_threads::<_, f32x16<_>, D, false>(simd, pack, threads, number, yarn, rows));
+            }
+            (true, true) => {
+                dispatch!(level, simd => solve_threads::<_, f32x16<_>, D, true>(simd, pack, threads, number, yarn, rows));
+            }
+            (false, false) => {
+                dispatch!(level, simd => solve_threads::<_, f32x8<_>, D, false>(simd, pack, threads, number, yarn, rows));
+            }
+            (false, true) => {
+                dispatch!(level, simd => solve_threads::<_, f32x8<_>, D, true>(simd, pack, threads, number, yarn, rows));
             }
         }
     }
 }
 
-/// Solves one or two packs of threads, from that with a `number` on.
+/// The rows of up to two packs of rows.
+fn row_packs(lattice: &Lattice, first: usize) -> impl ExactSizeIterator<Item = Range<usize>> {
+    let rows = lattice.rows;
+    (first..rows.min(first + ROWS)).step_by(LANES).map(move |row| row..rows.min(row + LANES))
+}
+
 #[inline(always)]
-fn solve_packs<S: Simd, D: Side, const DAMPED: bool>(
+fn take_rows<S: Simd>(
     simd: S,
-    pack: &mut Pack,
-    threads: &Threads,
-    number: usize,
-    yarn: Yarn,
-    rows: &mut Rows,
+    columns: &[Block],
+    first_pack: usize,
+    lattice: &Lattice,
+    first: usize,
+    taken: &mut [Block],
 ) {
-    if pack.position.len() > pack.stride {
-        solve_threads::<S, f32x16<S>, D, DAMPED>(simd, pack, threads, number, yarn, rows);
-    } else {
-        solve_threads::<S, f32x8<S>, D, DAMPED>(simd, pack, threads, number, yarn, rows);
+    for (some, taken) in row_packs(lattice, first).zip(taken.chunks_exact_mut(lattice.along_rows.nodes)) {
+        let nodes = taken.chunks_exact_mut(LANES).skip(first_pack);
+        for (nodes, column) in nodes.zip(columns.chunks_exact(lattice.rows)) {
+            blocks_across(simd, &column[some.clone()], nodes);
+        }
+    }
+}
+
+#[inline(always)]
+fn put_rows<S: Simd>(
+    simd: S,
+    taken: &[Block],
+    columns: &mut [Block],
+    first_pack: usize,
+    lattice: &Lattice,
+    first: usize,
+) {
+    for (some, taken) in row_packs(lattice, first).zip(taken.chunks_exact(lattice.along_rows.nodes)) {
+        let nodes = taken.chunks_exact(LANES).skip(first_pack);
+        for (nodes, column) in nodes.zip(columns.chunks_exact_mut(lattice.rows)) {
+            blocks_across(simd, nodes, &mut column[some.clone()]);
+        }
     }
 }
 
@@ -252,44 +292,53 @@ fn across<'a, S: Simd>(simd: S, from: impl Iterator<Item = &'a Lane>, to: impl I
     }
 }
 
-/// Solves the diagonals of all cells: those between an even row and the next, then those below.
+/// Solves the diagonals of all cells: those between an even row and the next, then those below. The sheet may be a part of
+/// the lattice: all of the columns in its rows from the `first` on, which is even.
 pub(in crate::solver) fn solve_diagonals(
     sheet: &mut Sheet,
+    first: usize,
     lattice: &Lattice,
     constants: Scaled,
     instructions: Instructions,
 ) {
     let level = instructions.level();
     if constants.c > 0.0 {
-        dispatch!(level, simd => solve_all_diagonals::<_, true>(simd, sheet, lattice, constants));
+        dispatch!(level, simd => solve_all_diagonals::<_, true>(simd, sheet, first, lattice, constants));
     } else if constants.k > 0.0 {
-        dispatch!(level, simd => solve_all_diagonals::<_, false>(simd, sheet, lattice, constants));
+        dispatch!(level, simd => solve_all_diagonals::<_, false>(simd, sheet, first, lattice, constants));
     }
 }
 
 #[inline(always)]
-fn solve_all_diagonals<S: Simd, const DAMPED: bool>(simd: S, sheet: &mut Sheet, lattice: &Lattice, constants: Scaled) {
+fn solve_all_diagonals<S: Simd, const DAMPED: bool>(
+    simd: S,
+    sheet: &mut Sheet,
+    first: usize,
+    lattice: &Lattice,
+    constants: Scaled,
+) {
+    let rows = sheet.position.len() / lattice.order().pack_count();
     for parity in [0, 1] {
-        for row in (parity..lattice.rows - 1).step_by(2) {
+        for row in (parity..rows - 1).step_by(2) {
             let falling = (&lattice.falling, [row, row + 1]);
             let rising = (&lattice.rising, [row + 1, row]);
             // By turns, so that what comes first doesn't set the cloth spinning.
-            let pairs = if row % 4 < 2 { [falling, rising] } else { [rising, falling] };
-            for (rest, rows) in pairs {
-                solve_row_pair::<S, DAMPED>(simd, sheet, rest, row, rows, lattice.rows, constants);
+            let pairs = if (first + row) % 4 < 2 { [falling, rising] } else { [rising, falling] };
+            for (rest, ends) in pairs {
+                let rest = rest[first + row..].iter().step_by(lattice.rows);
+                solve_row_pair::<S, DAMPED>(simd, sheet, rest, ends, rows, constants);
             }
         }
     }
 }
 
-/// Solves the springs from each particle of one row to the next column of another. `rest` has their lengths (m) at the
-/// blocks of row `upper`.
+/// Solves the springs from each particle of one row to the next column of another. `rest` has their lengths (m) for each
+/// block of the row, and `rows` is the number of all.
 #[inline(always)]
-fn solve_row_pair<S: Simd, const DAMPED: bool>(
+fn solve_row_pair<'a, S: Simd, const DAMPED: bool>(
     simd: S,
     sheet: &mut Sheet,
-    rest: &[Lane],
-    upper: usize,
+    rest: impl Iterator<Item = &'a Lane>,
     [from, to]: [usize; 2],
     rows: usize,
     constants: Scaled,
@@ -303,7 +352,7 @@ fn solve_row_pair<S: Simd, const DAMPED: bool>(
     let mut here = end(sheet, to);
     // The first particle of the row is nobody's next one.
     let mut moved_before = here.position.ahead(here.position);
-    for at in (0..count).step_by(rows) {
+    for (at, rest) in (0..count).step_by(rows).zip(rest) {
         // After the last block comes nobody: there are no springs to it.
         let next = end(sheet, (at + rows + to).min(count - rows + to));
         let ahead = End {
@@ -311,7 +360,7 @@ fn solve_row_pair<S: Simd, const DAMPED: bool>(
             previous: if DAMPED { here.previous.ahead(next.previous) } else { here.position },
             inverse_mass: here.inverse_mass.slide::<1>(next.inverse_mass),
         };
-        let rest = lane(simd, &rest[at + upper]);
+        let rest = lane(simd, rest);
         let [a, b] = solve_abreast::<_, _, DAMPED>(simd, end(sheet, at + from), ahead, rest, constants);
         a.store(&mut sheet.position[at + from]);
         moved_before.behind(b).store(&mut sheet.position[at + to]);
