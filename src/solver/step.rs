@@ -5,7 +5,9 @@ use bevy::math::{Vec3A, ops};
 use super::{
     LevelPass, Method, Particles, Scratch, StepContext, StepReport, Topology,
     constraint::{
-        anchor, grab,
+        anchor,
+        braid::Strung,
+        grab,
         level::LevelRun,
         spring::{self, Scaled},
         strand::Both,
@@ -171,12 +173,16 @@ impl Substep<'_> {
             levels.solve(&run, lanes, pins, loom);
         }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, loom, row_masses, instructions, .. } = scratch;
+        let Scratch { lanes, beads, loom, spool, row_masses, instructions, .. } = scratch;
         let (material, h) = (&self.ctx.material, self.h);
         let loose = self.topology.batches.iter().filter(|batch| !batch.woven);
-        spring::solve(lanes, self.topology, loose, material, h, beads, *instructions);
+        let scaled = |kind| Scaled::new(material.spring(kind), h);
+        let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
+        let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
+        let braids = &self.topology.braids;
+        let strung = (!braids.is_empty()).then_some(Strung { braids, yarn, spool });
+        spring::solve(lanes, self.topology, loose, material, h, beads, strung, *instructions);
         if let Some(lattice) = &self.topology.lattice {
-            let scaled = |kind| Scaled::new(material.spring(kind), h);
             let mut sheet = Sheet {
                 position: &mut lanes.position.0,
                 previous: &lanes.previous.0,
@@ -184,8 +190,6 @@ impl Substep<'_> {
                 row_masses,
             };
             weave::solve_diagonals(&mut sheet, lattice, scaled(SpringKind::Shear), *instructions);
-            let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
-            let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
             weave::solve::<Both>(&mut sheet, lattice, yarn, self.last, loom, *instructions);
         }
     }
@@ -194,7 +198,7 @@ impl Substep<'_> {
     fn solve_springs(&self, scratch: &mut Scratch) {
         let batches = self.topology.batches.iter();
         let Scratch { lanes, beads, instructions, .. } = scratch;
-        spring::solve(lanes, self.topology, batches, &self.ctx.material, self.h, beads, *instructions);
+        spring::solve(lanes, self.topology, batches, &self.ctx.material, self.h, beads, None, *instructions);
     }
 
     /// Tethers to hands, then those to pins.
