@@ -206,3 +206,36 @@ impl<'a> Net<'a> {
         threads.push(thread);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thread_that_crosses_itself_is_cut_there() {
+        // To the right, around in three quarters of a circle, and up across where it came from.
+        let angle = |i: i32| i as f32 / 90.0 * 1.5 * core::f32::consts::PI;
+        let around = |i: i32| Vec3::new(bevy::math::ops::sin(angle(i)), bevy::math::ops::cos(angle(i)) - 1.0, 0.0);
+        let right = (-10..=10).map(|x| Vec3::X * x as f32);
+        let arc = (1..90).map(|i| 10.0 * (around(i) + Vec3::X));
+        let up = (-10..=10).filter(|&y| y != 0).map(|y| Vec3::Y * y as f32);
+        let rest: Vec<Vec3> = right.chain(arc).chain(up).collect();
+        let crossing = 10;
+        let before = 21 + 89 + 9;
+        let mut path: Vec<u32> = (0..rest.len() as u32).collect();
+        path.insert(before + 1, crossing);
+        let spring = |&[a, b]: &[u32; 2]| {
+            (SpringKind::Structural, Spring { a, b, rest: rest[a as usize].distance(rest[b as usize]) })
+        };
+        let springs: Vec<_> = path.array_windows().map(spring).collect();
+        let threads = find(&rest, &Edges::new(&[]), &springs);
+        assert_eq!(threads.len(), 2);
+        assert_eq!(threads.iter().map(|thread| thread.springs.len()).sum::<usize>(), springs.len());
+        for thread in threads {
+            assert_eq!(thread.particles.len(), thread.springs.len() + 1);
+            let mut particles = thread.particles;
+            particles.sort_unstable();
+            assert!(particles.array_windows().all(|[a, b]| a < b), "it comes by a particle twice");
+        }
+    }
+}

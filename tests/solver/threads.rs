@@ -51,6 +51,25 @@ pub fn sleeve(around: u32, rings: u32) -> Mesh {
     assemble((0..around * rings).map(place).collect(), &triangles)
 }
 
+/// Rings and spokes around a hub, upright, a metre wide.
+fn disc(spokes: u32, rings: u32) -> Mesh {
+    let place = |i: u32| {
+        let (ring, spoke) = (i / spokes + 1, i % spokes);
+        let (angle, radius) = (core::f32::consts::TAU * spoke as f32 / spokes as f32, 0.5 * ring as f32 / rings as f32);
+        Vec3::new(radius * ops::cos(angle), radius * ops::sin(angle), 0.0)
+    };
+    let hub = spokes * rings;
+    let cells = (0..rings - 1).flat_map(|ring| (0..spokes).map(move |spoke| (ring * spokes, spoke)));
+    let quads = cells.flat_map(|(ring, spoke)| {
+        let next = (spoke + 1) % spokes;
+        let [a, b, c, d] = [ring + spoke, ring + next, ring + spokes + spoke, ring + spokes + next];
+        [[a, c, b], [b, c, d]]
+    });
+    let fan = (0..spokes).map(|spoke| [hub, spoke, (spoke + 1) % spokes]);
+    let triangles: Vec<[u32; 3]> = quads.chain(fan).collect();
+    assemble((0..hub).map(place).chain([Vec3::ZERO]).collect(), &triangles)
+}
+
 type Key = (u32, u32, u32);
 
 /// The springs of all braids: along the threads, and across two springs of one.
@@ -143,6 +162,14 @@ fn rings_are_closed() {
 }
 
 #[test]
+fn spokes_end_before_their_hub() {
+    let topology = topology(disc(32, 16));
+    assert_shared_out(&topology);
+    assert_eq!(thread_count(&topology), 16 + 32);
+    assert_eq!(keys(&topology, SpringKind::Structural, false).len(), 32);
+}
+
+#[test]
 fn a_mesh_in_any_order_has_the_same_threads() {
     for (name, mesh) in [("triangles", hexagons(20)), ("an L", ell(24))] {
         let expected = thread_count(&topology(mesh.clone()));
@@ -216,7 +243,9 @@ fn upright_triangles(n: u32) -> Mesh {
 
 #[test]
 fn threads_leave_less_strain_than_springs_in_as_many_substeps() {
-    for (name, mesh, factor) in [("triangles", upright_triangles(32), 0.4), ("an L", ell(32), 0.2)] {
+    for (name, mesh, factor) in
+        [("triangles", upright_triangles(32), 0.4), ("an L", ell(32), 0.2), ("a disc", disc(48, 16), 0.5)]
+    {
         let bed = hung(mesh).with_substeps(4);
         let [with, without] = [bed.clone(), unravelled(bed)].map(|mut bed| {
             bed.run(2.0);
