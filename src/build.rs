@@ -4,6 +4,7 @@ use bevy::{math::Mat3A, prelude::*};
 
 use crate::{error::ClothError, solver::Topology};
 
+mod braids;
 mod cells;
 mod chart;
 mod coloring;
@@ -16,6 +17,7 @@ pub(crate) mod plan;
 pub(crate) mod source;
 mod springs;
 pub(crate) mod system;
+mod threads;
 mod topology;
 pub(crate) mod weld;
 

@@ -14,7 +14,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothSolver {
-    /// Each thread of a woven mesh solved exactly, and coarse levels for the long waves: the least stretch for the time
+    /// Each thread of a regular mesh solved exactly, and coarse levels for the long waves: the least stretch for the time
     /// that it takes, stable at any stiffness and time step. For games.
     #[default]
     Strands,

@@ -4,6 +4,7 @@
 //! cloth is from the world's origin. [`step()`] is the whole of it; the other modules are what it is made of, in the
 //! order in which a step uses them.
 
+pub mod braid;
 pub mod context;
 pub mod effort;
 pub mod lattice;
@@ -13,6 +14,7 @@ pub mod particles;
 pub mod scratch;
 pub mod simd;
 pub mod topology;
+pub mod weave;
 
 mod crew;
 mod integrate;
@@ -26,6 +28,7 @@ pub mod explicit;
 pub mod force;
 pub mod measure;
 
+pub use braid::Braid;
 pub use constraint::{
     grab::{Grab, GrabTether},
     tether::{Tether, Tethers},
@@ -44,3 +47,4 @@ pub use scratch::Scratch;
 pub use simd::Instructions;
 pub use step::{MAX_TIME_STEP, step};
 pub use topology::{Spring, SpringBatch, SpringKind, Topology};
+pub use weave::Weave;

@@ -16,7 +16,7 @@ use crate::{
     grab::Grabs,
     solver::{
         self, Anchor, Effort, Energy, Grab, Material, Obstacle, Particles, Scratch, StepReport, Strain, Tether,
-        Tethers, Topology, WindSource,
+        Tethers, Topology, Weave, WindSource,
     },
 };
 
@@ -167,6 +167,12 @@ impl ClothState {
     /// Springs, triangles and areas.
     pub fn topology(&self) -> &Arc<Topology> {
         &self.topology
+    }
+
+    /// What the cloth's mesh was found to be, by which [`ClothSolver::Strands`] goes: rows and columns, threads, or
+    /// springs one by one. None until the cloth is ready.
+    pub fn weave(&self) -> Option<Weave> {
+        (!self.particles.is_empty()).then(|| self.topology.weave())
     }
 
     /// What the latest step did: substeps, contacts. None before the first.

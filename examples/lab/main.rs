@@ -37,10 +37,10 @@ enum Experiment {
     Hang {
         #[command(flatten)]
         options: Options,
-        /// grid, delaunay, hex, skirt, or a FILE.glb, which is scaled to 1 m
+        /// grid, delaunay, hex, skirt, ell, sleeve, or a FILE.glb, which is scaled to 1 m
         #[arg(long, default_value = "grid")]
         mesh: MeshSource,
-        /// What is pinned: two corners of the top, or all of it, as always with a skirt; of a file's mesh, the top is
+        /// What is pinned: two corners of the top, or all of it, as always with a skirt or sleeve; of a file's mesh, the top is
         /// its highest 2 %
         #[arg(long, value_enum, default_value = "corners")]
         pins: PinnedPart,
@@ -71,7 +71,7 @@ enum Experiment {
     Drape {
         #[command(flatten)]
         options: Options,
-        /// grid, delaunay, hex, skirt, or a FILE.glb, which is scaled to 1 m
+        /// grid, delaunay, hex, skirt, ell, sleeve, or a FILE.glb, which is scaled to 1 m
         #[arg(long, default_value = "grid")]
         mesh: MeshSource,
     },
@@ -82,6 +82,9 @@ struct Options {
     /// Particles along each side, n; n² or about as many on other meshes than the grid, and without effect on a file
     #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=1024))]
     n: u32,
+    /// Moves the vertices inside a grid, delaunay, hex or ell at random by up to so much of a cell
+    #[arg(long, default_value_t = 0.0)]
+    jitter: f32,
     /// Substeps a frame; by default as many as the strain needs (strands) or 8 (xpbd). The explicit solver finds its own
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     substeps: Option<u32>,

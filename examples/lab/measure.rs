@@ -77,6 +77,7 @@ fn line(name: &str, options: &Options, scene: &Scene, substeps: u32, frames: &[F
         "particles": scene.particles.len(),
         "springs": scene.topology.springs.len(),
         "substeps": substeps,
+        "weave": scene.topology.weave().to_string(),
         "levels": scene.levels(),
         "build_ms": scene.build_ms,
         "tethers_ms": scene.tethers_ms,

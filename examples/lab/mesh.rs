@@ -14,9 +14,14 @@ use bevy::{
 use bevy_drape::prelude::ClothGrid;
 
 mod delaunay;
+mod ell;
 mod file;
 mod hex;
+mod jitter;
 mod skirt;
+mod sleeve;
+
+pub use jitter::jitter;
 
 /// Where the mesh of a cloth comes from.
 #[derive(Clone, Debug)]
@@ -25,6 +30,8 @@ pub enum MeshSource {
     Delaunay,
     Hex,
     Skirt,
+    Ell,
+    Sleeve,
     File(PathBuf),
 }
 
@@ -37,10 +44,12 @@ impl FromStr for MeshSource {
             "delaunay" => Ok(Self::Delaunay),
             "hex" => Ok(Self::Hex),
             "skirt" => Ok(Self::Skirt),
+            "ell" => Ok(Self::Ell),
+            "sleeve" => Ok(Self::Sleeve),
             _ if Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb")) => {
                 Ok(Self::File(name.into()))
             }
-            _ => Err("it has to be grid, delaunay, hex, skirt, or a file that ends in .glb".into()),
+            _ => Err("it has to be grid, delaunay, hex, skirt, ell, sleeve, or a file that ends in .glb".into()),
         }
     }
 }
@@ -52,6 +61,8 @@ impl fmt::Display for MeshSource {
             Self::Delaunay => f.write_str("delaunay"),
             Self::Hex => f.write_str("hex"),
             Self::Skirt => f.write_str("skirt"),
+            Self::Ell => f.write_str("ell"),
+            Self::Sleeve => f.write_str("sleeve"),
             Self::File(path) => path.display().fmt(f),
         }
     }
@@ -108,6 +119,8 @@ impl MeshSource {
             Self::Delaunay => Ok(delaunay::sheet(n)),
             Self::Hex => Ok(hex::sheet(n)),
             Self::Skirt => Ok(skirt::sheet(n)),
+            Self::Ell => Ok(ell::sheet(n)),
+            Self::Sleeve => Ok(sleeve::sheet(n)),
             Self::File(path) => file::sheet(path),
         }
     }

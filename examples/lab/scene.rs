@@ -17,7 +17,7 @@ use bevy_drape::{
 
 use super::{
     Options, PinnedPart, Solver, Switch,
-    mesh::{MeshSource, Top},
+    mesh::{self, MeshSource, Top},
     pins,
 };
 
@@ -115,7 +115,10 @@ pub fn drape(options: &Options, mesh: &MeshSource) -> io::Result<Scene> {
 /// The cloth at rest but for a smooth ripple of 1 mm, and what it hangs by.
 fn free_cloth(options: &Options, mesh: &MeshSource) -> io::Result<(Scene, Top)> {
     let unusable = |cause: String| io::Error::other(format!("{mesh} can't be used: {cause}"));
-    let sheet = mesh.sheet(options.n).map_err(unusable)?;
+    let mut sheet = mesh.sheet(options.n).map_err(unusable)?;
+    if options.jitter > 0.0 {
+        mesh::jitter(&mut sheet.mesh, options.jitter, options.n);
+    }
     let begun = Instant::now();
     let topology = build::topology_of(&sheet.mesh, Mat3A::IDENTITY).map_err(|error| unusable(error.to_string()))?;
     let build_ms = begun.elapsed().as_secs_f64() * 1e3;

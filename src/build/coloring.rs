@@ -8,12 +8,12 @@ use crate::solver::{Spring, SpringBatch, SpringKind};
 /// Order in which the solver visits the kinds. What comes last is held best: stretch shows more than bending.
 const ORDER: [SpringKind; 3] = [SpringKind::Bend, SpringKind::Shear, SpringKind::Structural];
 
-/// The springs in batches of one kind, one colour, and either on a lattice or not, for `count` particles.
+/// The springs in batches of one kind, one colour, and either on threads or not, for `count` particles.
 pub(crate) fn batches(count: usize, all: &[(SpringKind, Spring)], woven: &[bool]) -> (Vec<Spring>, Vec<SpringBatch>) {
     let mut springs = Vec::with_capacity(all.len());
     let mut batches = Vec::new();
-    for (kind, on_lattice) in ORDER.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
-        let of_batch = all.iter().zip(woven).filter(|&(spring, &woven)| spring.0 == kind && woven == on_lattice);
+    for (kind, on_thread) in ORDER.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
+        let of_batch = all.iter().zip(woven).filter(|&(spring, &woven)| spring.0 == kind && woven == on_thread);
         let mut left: Vec<Spring> = of_batch.map(|(&(_, spring), _)| spring).collect();
         // Last colour, counted from one, that used a particle.
         let mut used_by = vec![0; count];
@@ -33,7 +33,7 @@ pub(crate) fn batches(count: usize, all: &[(SpringKind, Spring)], woven: &[bool]
                 }
                 !is_free
             });
-            batches.push(SpringBatch { kind, range: start..springs.len(), woven: on_lattice });
+            batches.push(SpringBatch { kind, range: start..springs.len(), woven: on_thread });
         }
     }
     (springs, batches)

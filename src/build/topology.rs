@@ -3,11 +3,12 @@
 use bevy::{platform::collections::HashSet, prelude::*};
 
 use super::{
+    braids,
     cells::{self, Cells},
     chart, coloring,
     edges::Edges,
     lattice::{self, Rectangle},
-    levels, springs,
+    levels, springs, threads,
 };
 use crate::{
     error::ClothError,
@@ -53,7 +54,14 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>) -> To
         |&(kind, a, b): &springs::Link| (kind, Spring { a, b, rest: rest[a as usize].distance(rest[b as usize]) });
     let all: Vec<_> = links.iter().map(with_length).collect();
     let woven = rectangle.filter(Rectangle::is_in_order).map(|rectangle| lattice::weave(&rectangle, &all));
-    let (lattice, woven) = woven.map_or((None, vec![false; all.len()]), |(lattice, woven)| (Some(lattice), woven));
+    let (lattice, braids, woven) = match woven {
+        Some((lattice, woven)) => (Some(lattice), Vec::new(), woven),
+        None => {
+            let threads = threads::find(&rest, &edges, &all);
+            let (braids, woven) = braids::plait(rest.len(), &threads, &all);
+            (None, braids, woven)
+        }
+    };
     let levels = match &lattice {
         Some(lattice) => levels::of_lattice(lattice),
         None => chart::find(&rest, &triangles, uvs)
@@ -63,7 +71,7 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>) -> To
     let (springs, batches) = coloring::batches(rest.len(), &all, &woven);
     let triangle_areas: Vec<f32> = triangles.iter().map(|triangle| triangle_area(&rest, triangle)).collect();
     let areas = particle_areas(rest.len(), &triangles, &triangle_areas);
-    Topology { rest, springs, batches, triangles, triangle_areas, areas, cells: cells.corners, lattice, levels }
+    Topology { rest, springs, batches, triangles, triangle_areas, areas, cells: cells.corners, lattice, braids, levels }
 }
 
 /// Splits triangles with distinct corners into those with an area and slivers, and drops repetitions.

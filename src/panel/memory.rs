@@ -40,6 +40,8 @@ pub(super) struct Memory {
 pub(super) struct Readings {
     pub particles: usize,
     pub springs: usize,
+    /// What the mesh was found to be.
+    pub weave: String,
     /// Of the one that takes the most.
     pub substeps: u32,
     pub contacts: u32,

@@ -30,6 +30,11 @@ const STEP_TIME: Naming = naming(
 );
 const PARTICLES: Naming = naming("Particles", "Points with a mass: vertices at one place are one of them.");
 const SPRINGS: Naming = naming("Springs", "Springs of all kinds.");
+const WEAVE: Naming = naming(
+    "Mesh",
+    "What strands find in the mesh: rows and columns, which they hold best, threads that go straight on from edge to edge, \
+     or nothing but springs; and the coarse levels that it has, whether they are used or not.",
+);
 const SUBSTEPS: Naming =
     naming("Substeps taken", "Substeps of the latest step: what the explicit solver needs, or what XPBD is told.");
 const CONTACTS: Naming = naming("Contacts", "Particles that touch an obstacle, each counted once an obstacle.");
@@ -50,6 +55,7 @@ fn show_cost(ui: &mut Ui, readings: &Readings, step_times: &VecDeque<f32>) {
     plot(ui, step_times, mean);
     reading(ui, PARTICLES, readings.particles.to_string());
     reading(ui, SPRINGS, readings.springs.to_string());
+    reading(ui, WEAVE, readings.weave.clone());
     reading(ui, SUBSTEPS, readings.substeps.to_string());
     reading(ui, CONTACTS, readings.contacts.to_string());
 }

@@ -86,6 +86,9 @@ fn add(readings: &mut Readings, state: &ClothState, strain: Strain, gravity: Vec
     let (substeps, contacts) = state.report().map_or((0, 0), |report| (report.substeps, report.contacts));
     readings.particles += state.particle_count();
     readings.springs += state.topology().springs.len();
+    let weave = weave(state);
+    let is_like_others = readings.weave.is_empty() || readings.weave == weave;
+    readings.weave = if is_like_others { weave } else { "various".into() };
     readings.substeps = readings.substeps.max(substeps);
     readings.contacts += contacts;
     readings.largest_strain = readings.largest_strain.max(strain.largest);
@@ -94,6 +97,16 @@ fn add(readings: &mut Readings, state: &ClothState, strain: Strain, gravity: Vec
     readings.elastic += energy.elastic;
     readings.total += energy.total();
     energy.kinetic
+}
+
+/// What the mesh of a cloth was found to be, and how many levels it has.
+fn weave(state: &ClothState) -> String {
+    let levels = match state.topology().levels.len() {
+        0 => "no levels".into(),
+        1 => "1 level".into(),
+        count => format!("{count} levels"),
+    };
+    state.weave().map_or_else(String::new, |weave| format!("{weave}, {levels}"))
 }
 
 fn situation(state: &ClothState, watch: &Watch) -> Option<Situation> {

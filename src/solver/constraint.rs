@@ -1,6 +1,7 @@
 //! What holds particles together: each constraint moves positions, once a substep.
 
 pub(super) mod anchor;
+pub(super) mod braid;
 pub mod grab;
 pub(super) mod level;
 pub mod spring;

@@ -7,7 +7,7 @@ use super::{Effort, Grab, Material, Obstacle, Tethers, WindSource};
 /// How the springs are integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Extended position-based dynamics, with each thread of a woven mesh solved exactly and coarse levels for the long
+    /// Extended position-based dynamics, with each thread of a regular mesh solved exactly and coarse levels for the long
     /// waves: stable at any stiffness, and stretched least.
     #[default]
     Strands,

@@ -1,6 +1,6 @@
 //! How much work a cloth needs to be stretched no more than is wanted.
 
-use super::{LevelPass, Topology};
+use super::{LevelPass, Topology, Weave};
 
 /// Substeps and levels of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,13 +25,16 @@ impl Effort {
     const LEAST_OF_SIDE: f32 = 1.0 / 6.0;
 
     /// What a cloth of 64 x 64 particles, 1 m wide and hung by two corners, is stretched while it swings in one substep
-    /// of 1/60 s, no unit.
+    /// of 1/60 s, no unit. It grows with this power of the particles along a side; without rows and columns, on threads
+    /// only, with the one below.
     const STRAIN_OF_ONE: f32 = 0.1;
+    const GROWTH: f32 = 1.2;
+    const GROWTH_ON_THREADS: f32 = 0.8;
 
     /// The same with levels.
     const STRAIN_WITH_LEVELS: f32 = 0.03;
 
-    /// The same with levels, without rows and columns, for all but one in a hundred springs.
+    /// The same with levels and without threads, for all but one in a hundred springs.
     const LOOSE_STRAIN: f32 = 0.04;
 
     /// Where more substeps than this would be needed, levels help.
@@ -42,14 +45,18 @@ impl Effort {
     ///
     /// Measured with `lab hang` over grids of 16 to 256 particles a side: strain falls with the number of substeps, and
     /// grows with the power 1.2 of the particles along a side, with levels 0.9. Levels never let a hung cloth come quite
-    /// to rest, so they are used where substeps alone would be too many. A cloth that is stretched more by its own weight
-    /// stays so. On a mesh without rows and columns a few springs are stretched several times as much.
+    /// to rest, so they are used where substeps alone would be too many, and on meshes without threads. A cloth that is
+    /// stretched more by its own weight stays so. On triangles a few springs are stretched several times as much: those
+    /// next to a pin carry its whole load.
     pub fn to_hold(max_strain: f32, topology: &Topology) -> Self {
         let grown = |of_64: f32, power: f32| of_64 * bevy::math::ops::powf(side(topology) / 64.0, power) / max_strain;
-        let is_woven = topology.lattice.is_some();
-        let without = if is_woven { grown(Self::STRAIN_OF_ONE, 1.2) } else { f32::INFINITY };
+        let without = match topology.weave() {
+            Weave::Lattice { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH),
+            Weave::Threads { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH_ON_THREADS),
+            Weave::Springs { .. } => f32::INFINITY,
+        };
         let with_levels = without > Self::MOST_WITHOUT_LEVELS;
-        let of_64 = if is_woven { Self::STRAIN_WITH_LEVELS } else { Self::LOOSE_STRAIN };
+        let of_64 = if without < f32::INFINITY { Self::STRAIN_WITH_LEVELS } else { Self::LOOSE_STRAIN };
         let needed = if with_levels { grown(of_64, 0.9) } else { without };
         let substeps = needed.ceil().clamp(2.0, 64.0) as u32;
         let least = Self::LEAST_WITH_CARE.max(Self::LEAST_OF_SIDE * side(topology)).ceil() as u32;

@@ -4,7 +4,7 @@ use bevy::math::Vec3A;
 
 use super::{
     Instructions, Lanes,
-    constraint::{level::Levels, spring::Beads, tether::PinPlaces, weave::Loom},
+    constraint::{braid::Spool, level::Levels, spring::Beads, tether::PinPlaces, weave::Loom},
     force::wind::Air,
     lanes::Points,
     share::Shares,
@@ -32,6 +32,8 @@ pub struct Scratch {
     pub(super) beads: Beads,
     /// Threads that are being solved.
     pub(super) loom: Loom,
+    /// Threads of braids that are being solved.
+    pub(super) spool: Spool,
     /// Inverse masses for eight rows side by side, 1/kg.
     pub(super) row_masses: Vec<Lane>,
     /// The coarse levels.

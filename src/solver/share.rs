@@ -131,9 +131,9 @@ impl Cloth<'_> {
         let rows = weave.lattice.rows;
         for band in &self.bands {
             let mut band = lock(band);
-            band.take(2 * part, rows, &run.position, |band| &mut band.position);
+            band.take(2 * part, rows, run.position, |band| &mut band.position);
             if self.work.shear.c > 0.0 {
-                band.take(2 * part, rows, &run.previous, |band| &mut band.previous);
+                band.take(2 * part, rows, run.previous, |band| &mut band.previous);
             }
         }
     }

@@ -8,7 +8,9 @@ use bevy::{
 use super::{
     Lattice, LevelPass, Method, Particles, Scratch, StepContext, StepReport, Tethers, Topology,
     constraint::{
-        anchor, grab,
+        anchor,
+        braid::Strung,
+        grab,
         level::LevelRun,
         spring::{self, Scaled},
         strand::Both,
@@ -221,10 +223,12 @@ impl Substep<'_> {
             return finish.is_some();
         }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, loom, row_masses, instructions, .. } = scratch;
+        let Scratch { lanes, beads, loom, spool, row_masses, instructions, .. } = scratch;
         let (material, h) = (&self.ctx.material, self.h);
         let loose = self.topology.batches.iter().filter(|batch| !batch.woven);
-        spring::solve(lanes, self.topology, loose, material, h, beads, *instructions);
+        let braids = &self.topology.braids;
+        let strung = (!braids.is_empty()).then_some(Strung { braids, yarn, spool });
+        spring::solve(lanes, self.topology, loose, material, h, beads, strung, *instructions);
         if let Some(lattice) = &self.topology.lattice {
             let mut sheet = Sheet {
                 position: &mut lanes.position.0,
@@ -249,7 +253,7 @@ impl Substep<'_> {
     fn solve_springs(&self, scratch: &mut Scratch) {
         let batches = self.topology.batches.iter();
         let Scratch { lanes, beads, instructions, .. } = scratch;
-        spring::solve(lanes, self.topology, batches, &self.ctx.material, self.h, beads, *instructions);
+        spring::solve(lanes, self.topology, batches, &self.ctx.material, self.h, beads, None, *instructions);
     }
 
     /// Tethers to hands, then those to pins.

@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use bevy::math::Vec3;
 
-use super::{Lattice, Level, lanes::Order};
+use super::{Braid, Lattice, Level, lanes::Order};
 
 /// What a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -45,7 +45,8 @@ pub struct SpringBatch {
     pub kind: SpringKind,
     /// Their place in [`Topology::springs`].
     pub range: Range<usize>,
-    /// Whether [`Topology::lattice`] has them too: [`Method::Strands`](super::Method::Strands) solves them there.
+    /// Whether [`Topology::lattice`] or [`Topology::braids`] have them too: [`Method::Strands`](super::Method::Strands)
+    /// solves them there.
     pub woven: bool,
 }
 
@@ -68,6 +69,8 @@ pub struct Topology {
     pub cells: Vec<[u32; 4]>,
     /// The rows and columns that all particles are in, where they are in rows and columns.
     pub lattice: Option<Lattice>,
+    /// The threads of a regular mesh without a lattice, in the order in which the solver visits them.
+    pub braids: Vec<Braid>,
     /// Coarse lattices, the coarsest first.
     pub levels: Vec<Level>,
 }

@@ -13,6 +13,7 @@ mod drawing;
 mod edits;
 mod hovers;
 mod inspector;
+mod numbers;
 mod revert;
 mod warnings;
 mod window;

@@ -12,7 +12,8 @@ use bevy_drape::{
 use crate::{
     bench_bed::{ALL, Bed, bits},
     grabs::hand,
-    lattices::strewn,
+    lattices::{hexagons, strewn},
+    threads::{ell, sleeve},
 };
 
 /// A cloth to which all that there is happens at once.
@@ -40,12 +41,15 @@ fn scene(mesh: impl Into<Mesh>, method: Method, damping: f32) -> Bed {
 
 #[test]
 fn the_widest_instructions_and_the_plainest_give_the_same_bits() {
-    // In rows and columns that fill blocks of eight, that don't, and in none, without and with levels.
+    // In rows and columns that fill blocks of eight, that don't, in none, and on threads, without and with levels.
     let meshes = [
         Mesh::from(ClothGrid::new(1.0, 1.0, 24, 24)),
         Mesh::from(ClothGrid::new(1.0, 0.8, 21, 17).lying()),
         Mesh::from(Sphere::new(0.4)),
         strewn(20),
+        hexagons(20).scaled_by(Vec3::splat(0.05)),
+        sleeve(16, 24),
+        ell(22),
     ];
     let cases = ALL.into_iter().flat_map(|method| [(method, 0.0), (method, 0.02)]);
     for ((method, damping), mesh) in cases.flat_map(|case| meshes.iter().map(move |mesh| (case, mesh.clone()))) {
@@ -53,7 +57,7 @@ fn the_widest_instructions_and_the_plainest_give_the_same_bits() {
             let mut bed = scene(mesh.clone(), method, damping);
             bed.scratch.instructions = instructions;
             let touched = (0..60).map(|_| bed.step(1.0 / 60.0).contacts).max();
-            assert!(touched > Some(0), "{method:?}: the scene has contacts");
+            assert!(touched > Some(0), "{method:?}: the scene of {} particles has contacts", bed.particles.len());
             assert!(bed.particles.is_finite());
             bits(&bed.particles)
         });

@@ -18,4 +18,5 @@ mod springs;
 mod statics;
 mod strands;
 mod tethers;
+mod threads;
 mod topology;

@@ -15,6 +15,7 @@
 use bevy::math::Vec3A;
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
+use super::braid::Strung;
 use crate::solver::{
     Lanes, Material, Spring, SpringBatch, SpringConstants, Topology,
     lanes::{apart, together},
@@ -117,7 +118,7 @@ impl Beads {
 impl Beads {
     /// One end of eight springs, at eight particles.
     #[inline(always)]
-    fn end<S: Simd, const DAMPED: bool>(&self, simd: S, particles: &[u32; LANES]) -> End<f32x8<S>> {
+    pub fn end<S: Simd, const DAMPED: bool>(&self, simd: S, particles: &[u32; LANES]) -> End<f32x8<S>> {
         let [x, y, z, inverse_mass] = gather(simd, &self.now, particles);
         let position = Vec3x8 { x, y, z };
         let previous = if DAMPED {
@@ -131,7 +132,7 @@ impl Beads {
 
     /// Moves eight particles.
     #[inline(always)]
-    fn put<S: Simd>(&mut self, particles: &[u32; LANES], Vec3x8 { x, y, z }: Vec3x8<S>, inverse_mass: f32x8<S>) {
+    pub fn put<S: Simd>(&mut self, particles: &[u32; LANES], Vec3x8 { x, y, z }: Vec3x8<S>, inverse_mass: f32x8<S>) {
         for (&i, bead) in particles.iter().zip(together([x, y, z, inverse_mass])) {
             self.now[i as usize] = bead;
         }
@@ -160,7 +161,8 @@ fn bead<'a>(beads: &'a [[f32; 4]], i: &u32) -> &'a [f32; 4] {
     &beads[*i as usize]
 }
 
-/// Solves all springs of `batches` once, batch after batch, in a substep of `h` seconds.
+/// Solves all springs of `batches` once, batch after batch, in a substep of `h` seconds, and then the braids.
+#[expect(clippy::too_many_arguments, reason = "springs and braids share one way to the beads and back")]
 pub(in crate::solver) fn solve<'a>(
     lanes: &mut Lanes,
     topology: &Topology,
@@ -168,12 +170,13 @@ pub(in crate::solver) fn solve<'a>(
     material: &Material,
     h: f32,
     beads: &mut Beads,
+    braids: Option<Strung>,
     instructions: Instructions,
 ) {
     let level = instructions.level();
     let mut batches = batches.map(|batch| (batch, Scaled::new(material.spring(batch.kind), h)));
     let mut batches = batches.by_ref().filter(|(_, constants)| constants.acts()).peekable();
-    if batches.peek().is_none() {
+    if batches.peek().is_none() && braids.is_none() {
         return;
     }
     if material.springs.iter().any(|spring| spring.damping > 0.0) {
@@ -188,6 +191,9 @@ pub(in crate::solver) fn solve<'a>(
         } else {
             dispatch!(level, simd => solve_batch::<_, false>(simd, beads, springs, constants));
         }
+    }
+    if let Some(strung) = braids {
+        strung.solve(beads, instructions);
     }
     dispatch!(level, simd => beads.write(simd, lanes));
 }
@@ -258,7 +264,16 @@ mod tests {
         springs[0] = SpringConstants { stiffness, damping };
         let material =
             Material { density: 1.0, springs, damping: 0.0, thickness: 0.0, friction: 0.0, drag: 0.0, lift: 0.0 };
-        solve(lanes, topology, topology.batches.iter(), &material, 0.1, &mut Beads::default(), Instructions::Best);
+        solve(
+            lanes,
+            topology,
+            topology.batches.iter(),
+            &material,
+            0.1,
+            &mut Beads::default(),
+            None,
+            Instructions::Best,
+        );
     }
 
     #[test]

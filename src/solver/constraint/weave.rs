@@ -60,7 +60,7 @@ pub(in crate::solver) struct Yarn {
 }
 
 impl Yarn {
-    fn is_damped(&self) -> bool {
+    pub fn is_damped(&self) -> bool {
         self.stretch.c > 0.0 || self.bend.is_some_and(|bend| bend.c > 0.0)
     }
 }

@@ -1,0 +1,89 @@
+//! Threads that lie anywhere on a mesh, as strands: gathered eight side by side, solved, and put back.
+
+use fearless_simd::{dispatch, f32x8, prelude::*};
+
+use super::{
+    spring::Beads,
+    strand::{Both, Pack, Rows},
+    weave::Yarn,
+};
+use crate::solver::{
+    Braid,
+    lanes::Block,
+    simd::{Instructions, Lane, Vec3x8, lane},
+};
+
+/// Buffers for the threads that are being solved.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Spool {
+    rows: Rows,
+    position: Vec<Block>,
+    previous: Vec<Block>,
+    inverse_mass: Vec<Lane>,
+}
+
+impl Spool {
+    fn fit(&mut self, nodes: usize) {
+        let nodes = nodes.max(self.position.len());
+        self.rows.make_room(nodes);
+        self.position.resize(nodes, Block::default());
+        self.previous.resize(nodes, Block::default());
+        self.inverse_mass.resize(nodes, Lane::default());
+    }
+}
+
+/// The braids that are to be solved in a substep.
+pub(in crate::solver) struct Strung<'a> {
+    pub braids: &'a [Braid],
+    pub yarn: Yarn,
+    pub spool: &'a mut Spool,
+}
+
+impl Strung<'_> {
+    /// Solves them one after the other.
+    pub fn solve(self, beads: &mut Beads, instructions: Instructions) {
+        let Self { braids, yarn, spool } = self;
+        spool.fit(braids.iter().map(|braid| braid.nodes.len()).max().unwrap_or(0));
+        let level = instructions.level();
+        if yarn.is_damped() {
+            dispatch!(level, simd => solve_braids::<_, true>(simd, beads, braids, yarn, spool));
+        } else {
+            dispatch!(level, simd => solve_braids::<_, false>(simd, beads, braids, yarn, spool));
+        }
+    }
+}
+
+#[inline(always)]
+fn solve_braids<S: Simd, const DAMPED: bool>(
+    simd: S,
+    beads: &mut Beads,
+    braids: &[Braid],
+    yarn: Yarn,
+    Spool { rows, position, previous, inverse_mass }: &mut Spool,
+) {
+    for Braid { nodes, stretch, bend, closed } in braids {
+        for (j, particles) in nodes.iter().enumerate() {
+            let end = beads.end::<S, DAMPED>(simd, particles);
+            end.position.store(&mut position[j]);
+            if DAMPED {
+                end.previous.store(&mut previous[j]);
+            }
+            inverse_mass[j] = end.inverse_mass.into();
+        }
+        let (count, stride) = (nodes.len(), nodes.len());
+        let mut pack = Pack { position, previous, inverse_mass, stride };
+        if let Some(constants) = yarn.bend {
+            pack.solve_bends::<S, f32x8<S>, DAMPED>(simd, count, bend, constants);
+        }
+        if yarn.stretch.acts() {
+            if *closed {
+                pack.solve::<S, f32x8<S>, Both, DAMPED, true>(simd, count, stretch, yarn, rows);
+            } else {
+                pack.solve::<S, f32x8<S>, Both, DAMPED, false>(simd, count, stretch, yarn, rows);
+            }
+        }
+        for (j, particles) in nodes.iter().enumerate() {
+            beads.put(particles, Vec3x8::load(simd, &position[j]), lane(simd, &inverse_mass[j]));
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! Regular meshes that are no rectangle get threads from edge to edge, and others none.
+
+use std::collections::BTreeSet;
+
+use bevy::{math::ops, prelude::*};
+use bevy_drape::{
+    prelude::{ClothGrid, Fabric},
+    solver::{Effort, Method, SpringKind, Topology, Weave, measure},
+};
+use fastrand::Rng;
+
+use crate::{
+    bench_bed::{Bed, bare, rms},
+    lattices::{assemble, hexagons, strewn, topology},
+};
+
+/// The cells of a square metre of `side` x `side` particles, upright, that are wanted.
+pub fn quads(side: u32, is_wanted: impl Fn(u32, u32) -> bool) -> Mesh {
+    let place = |i: u32| Vec3::new((i % side) as f32, -((i / side) as f32), 0.0) / (side - 1) as f32;
+    let cells = (0..side - 1).flat_map(|row| (0..side - 1).map(move |column| (row, column)));
+    let triangles: Vec<[u32; 3]> = cells
+        .filter(|&(row, column)| is_wanted(row, column))
+        .flat_map(|(row, column)| {
+            let a = row * side + column;
+            [[a, a + side, a + 1], [a + 1, a + side, a + side + 1]]
+        })
+        .collect();
+    assemble((0..side * side).map(place).collect(), &triangles)
+}
+
+/// A square metre without the quarter at the bottom right.
+pub fn ell(side: u32) -> Mesh {
+    quads(side, |row, column| row < side / 2 || column < side / 2)
+}
+
+/// Equilateral triangles around a tube.
+pub fn sleeve(around: u32, rings: u32) -> Mesh {
+    let place = |i: u32| {
+        let (ring, column) = (i / around, i % around);
+        let angle = core::f32::consts::TAU * (column as f32 + 0.5 * (ring % 2) as f32) / around as f32;
+        Vec3::new(0.2 * ops::cos(angle), -0.05 * ring as f32, 0.2 * ops::sin(angle))
+    };
+    let cells = (0..rings - 1).flat_map(|ring| (0..around).map(move |column| (ring, column)));
+    let triangles: Vec<[u32; 3]> = cells
+        .flat_map(|(ring, column)| {
+            let at = |down: u32, along: u32| (ring + down) * around + (column + along) % around;
+            let [a, b, c, d] = [at(0, 0), at(0, 1), at(1, 0), at(1, 1)];
+            if ring % 2 == 0 { [[a, b, c], [b, d, c]] } else { [[a, d, c], [a, b, d]] }
+        })
+        .collect();
+    assemble((0..around * rings).map(place).collect(), &triangles)
+}
+
+/// Rings and spokes around a hub, upright, a metre wide.
+fn disc(spokes: u32, rings: u32) -> Mesh {
+    let place = |i: u32| {
+        let (ring, spoke) = (i / spokes + 1, i % spokes);
+        let (angle, radius) = (core::f32::consts::TAU * spoke as f32 / spokes as f32, 0.5 * ring as f32 / rings as f32);
+        Vec3::new(radius * ops::cos(angle), radius * ops::sin(angle), 0.0)
+    };
+    let hub = spokes * rings;
+    let cells = (0..rings - 1).flat_map(|ring| (0..spokes).map(move |spoke| (ring * spokes, spoke)));
+    let quads = cells.flat_map(|(ring, spoke)| {
+        let next = (spoke + 1) % spokes;
+        let [a, b, c, d] = [ring + spoke, ring + next, ring + spokes + spoke, ring + spokes + next];
+        [[a, c, b], [b, c, d]]
+    });
+    let fan = (0..spokes).map(|spoke| [hub, spoke, (spoke + 1) % spokes]);
+    let triangles: Vec<[u32; 3]> = quads.chain(fan).collect();
+    assemble((0..hub).map(place).chain([Vec3::ZERO]).collect(), &triangles)
+}
+
+type Key = (u32, u32, u32);
+
+/// The springs of all braids: along the threads, and across two springs of one.
+fn braided(topology: &Topology) -> [BTreeSet<Key>; 2] {
+    let nobody = topology.particle_count() as u32;
+    let [mut along, mut across] = [BTreeSet::new(), BTreeSet::new()];
+    for braid in &topology.braids {
+        let count = braid.nodes.len();
+        for lane in 0..8 {
+            let particle = |j: usize| braid.nodes[j % count][lane];
+            let lengths = [(1, &braid.stretch, &mut along), (2, &braid.bend, &mut across)];
+            for (steps, lengths, springs) in lengths {
+                for (j, rest) in lengths.iter().enumerate().filter(|(_, rest)| rest[lane] > 0.0) {
+                    let (a, b) = (particle(j), particle(j + steps));
+                    assert!(j + steps < count || braid.closed && steps == 1, "only a ring goes on after its end");
+                    assert!(a < nobody && b < nobody, "a spring to nobody");
+                    assert!(springs.insert((a.min(b), a.max(b), rest[lane].to_bits())), "{a} to {b} twice");
+                }
+            }
+        }
+    }
+    [along, across]
+}
+
+fn keys(topology: &Topology, kind: SpringKind, woven: bool) -> BTreeSet<Key> {
+    let batches = topology.batches.iter().filter(|batch| batch.kind == kind && batch.woven == woven);
+    let springs = batches.flat_map(|batch| &topology.springs[batch.range.clone()]);
+    springs.map(|spring| (spring.a.min(spring.b), spring.a.max(spring.b), spring.rest.to_bits())).collect()
+}
+
+/// Braids and batches that aren't woven have every spring once, and no two threads of a braid meet.
+#[track_caller]
+pub fn assert_shared_out(topology: &Topology) {
+    let [along, across] = braided(topology);
+    assert_eq!(along, keys(topology, SpringKind::Structural, true));
+    assert_eq!(across, keys(topology, SpringKind::Bend, true));
+    assert!(keys(topology, SpringKind::Shear, true).is_empty());
+    let nobody = topology.particle_count() as u32;
+    for braid in &topology.braids {
+        let mut seen = BTreeSet::new();
+        let particles = braid.nodes.as_flattened().iter().filter(|&&particle| particle != nobody);
+        assert!(particles.copied().all(|particle| seen.insert(particle)), "threads of a braid meet");
+        assert_eq!(braid.nodes.len(), braid.stretch.len());
+    }
+}
+
+fn thread_count(topology: &Topology) -> usize {
+    match topology.weave() {
+        Weave::Threads { count } => count,
+        other => panic!("{other}"),
+    }
+}
+
+#[test]
+fn regular_meshes_have_all_their_structural_springs_on_threads() {
+    let cross = |row: u32, column: u32| (8..16).contains(&row) || (8..16).contains(&column);
+    let holed = |row: u32, column: u32| !((8..12).contains(&row) && (6..14).contains(&column));
+    let cases = [
+        ("triangles", hexagons(20), 20 + 29 + 28),
+        ("an L", ell(24), 24 + 12 + 24 + 12 - 24),
+        ("a cross", quads(25, cross), 25 + 25),
+        ("with a hole", quads(25, holed), 25 + 25 + 3 + 7),
+        ("a sleeve", sleeve(24, 20), 20 + 2 * 24),
+    ];
+    for (name, mesh, threads) in cases {
+        let topology = topology(mesh);
+        println!("{name}: {}", topology.weave());
+        assert_shared_out(&topology);
+        assert_eq!(keys(&topology, SpringKind::Structural, false).len(), 0, "{name}");
+        assert_eq!(thread_count(&topology), threads, "{name}");
+    }
+}
+
+#[test]
+fn threads_of_quads_bend_and_those_of_triangles_bend_across_their_edges() {
+    let quads = topology(ell(24));
+    assert_eq!(keys(&quads, SpringKind::Bend, false).len(), 0);
+    let triangles = topology(hexagons(20));
+    assert_eq!(keys(&triangles, SpringKind::Bend, true).len(), 0);
+}
+
+#[test]
+fn rings_are_closed() {
+    let topology = topology(sleeve(24, 20));
+    let rings: Vec<_> = topology.braids.iter().filter(|braid| braid.closed).collect();
+    assert_eq!(rings.iter().map(|braid| braid.thread_count()).sum::<usize>(), 20);
+    for ring in rings {
+        assert_eq!((ring.nodes.len(), ring.spring_count()), (24, 24 * ring.thread_count()));
+    }
+}
+
+#[test]
+fn spokes_end_before_their_hub() {
+    let topology = topology(disc(32, 16));
+    assert_shared_out(&topology);
+    assert_eq!(thread_count(&topology), 16 + 32);
+    assert_eq!(keys(&topology, SpringKind::Structural, false).len(), 32);
+}
+
+#[test]
+fn a_mesh_in_any_order_has_the_same_threads() {
+    for (name, mesh) in [("triangles", hexagons(20)), ("an L", ell(24))] {
+        let expected = thread_count(&topology(mesh.clone()));
+        for seed in 0..5 {
+            let mut rng = Rng::with_seed(seed);
+            let mut triangles: Vec<[Vec3; 3]> =
+                mesh.triangles().expect("a list of triangles").map(|triangle| triangle.vertices).collect();
+            rng.shuffle(&mut triangles);
+            let corners = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect::<Vec<_>>();
+            let topology = topology(assemble(triangles.as_flattened().to_vec(), &corners));
+            assert_shared_out(&topology);
+            assert_eq!(thread_count(&topology), expected, "{name}, seed {seed}");
+        }
+    }
+}
+
+#[test]
+fn irregular_meshes_have_no_threads_and_neither_have_tiny_ones_and_fans() {
+    let mut two = Mesh::from(Triangle3d::default());
+    two.merge(&Mesh::from(Triangle3d::default()).translated_by(Vec3::X * 5.0)).unwrap();
+    let meshes = [
+        ("Delaunay's", strewn(30)),
+        ("one triangle", Triangle3d::default().into()),
+        ("two", two),
+        ("a fan", Circle::new(1.0).mesh().resolution(200).into()),
+    ];
+    for (name, mesh) in meshes {
+        let topology = topology(mesh);
+        assert!(topology.braids.is_empty() && topology.batches.iter().all(|batch| !batch.woven), "{name}");
+        assert!(matches!(topology.weave(), Weave::Springs { .. }), "{name}");
+    }
+}
+
+#[test]
+fn whatever_is_left_of_a_sheet_has_every_spring_once() {
+    let mut woven = 0;
+    for seed in 0..60 {
+        let mut rng = Rng::with_seed(seed);
+        let share = rng.f32();
+        let mut missing: Vec<bool> = (0..20 * 20).map(|_| rng.f32() < 0.5 * share * share).collect();
+        missing[9 * 20 + 9] = true;
+        let topology = topology(quads(20, |row, column| !missing[(row * 20 + column) as usize]));
+        assert_shared_out(&topology);
+        woven += usize::from(!topology.braids.is_empty());
+    }
+    assert!(woven > 10, "{woven} of 60");
+}
+
+/// A sheet that hangs by the two particles that are farthest up, left and right.
+fn hung(mesh: Mesh) -> Bed {
+    let bed = Bed::new(mesh, bare(Fabric::default()));
+    let highest = bed.topology.rest.iter().map(|p| p.y).fold(f32::MIN, f32::max);
+    let top = || (0_u32..).zip(&bed.topology.rest).filter(|(_, p)| p.y > highest - 1e-4);
+    let left = top().min_by(|(_, p), (_, q)| p.x.total_cmp(&q.x)).expect("a particle").0;
+    let right = top().max_by(|(_, p), (_, q)| p.x.total_cmp(&q.x)).expect("a particle").0;
+    Bed { fluid_density: 0.0, ..bed }.pinned([left, right]).tethered(&[left, right])
+}
+
+/// The same cloth with its threads taken apart.
+fn unravelled(mut bed: Bed) -> Bed {
+    bed.topology.braids.clear();
+    bed.topology.batches.iter_mut().for_each(|batch| batch.woven = false);
+    bed
+}
+
+/// Triangles that stand upright, a metre high.
+fn upright_triangles(n: u32) -> Mesh {
+    let turn = Quat::from_rotation_x(core::f32::consts::FRAC_PI_2);
+    hexagons(n).rotated_by(turn).scaled_by(Vec3::splat(1.0 / n as f32))
+}
+
+#[test]
+fn threads_leave_less_strain_than_springs_in_as_many_substeps() {
+    for (name, mesh, factor) in
+        [("triangles", upright_triangles(32), 0.4), ("an L", ell(32), 0.2), ("a disc", disc(48, 16), 0.5)]
+    {
+        let bed = hung(mesh).with_substeps(4);
+        let [with, without] = [bed.clone(), unravelled(bed)].map(|mut bed| {
+            bed.run(2.0);
+            measure::strain(&bed.particles, &bed.topology).mean
+        });
+        println!("{name}: {with} for {without}");
+        assert!(with < factor * without, "{name}: {with} for {without}");
+    }
+}
+
+#[test]
+fn threads_move_as_the_textbook_says_when_steps_are_small() {
+    let lying = |mesh: Mesh| mesh.rotated_by(Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2));
+    let meshes = [("triangles", upright_triangles(10)), ("an L", ell(10)), ("a sleeve", sleeve(10, 10))];
+    for ((name, mesh), damping) in meshes.iter().flat_map(|mesh| [(mesh, 0.0), (mesh, 0.05)]) {
+        let soft = Fabric {
+            structural_stiffness: 200.0,
+            structural_damping: damping,
+            bend_damping: damping,
+            ..Fabric::default()
+        };
+        let bed = Bed { tethers: None, material: bare(soft), ..hung(lying(mesh.clone())) }.with_substeps(64);
+        assert!(!bed.topology.braids.is_empty(), "{name}");
+        let explicit = Bed { method: Method::Explicit, ..bed.clone() };
+        let [strands, springs, explicit] = [bed.clone(), unravelled(bed.clone()), explicit].map(|mut bed| {
+            bed.run(0.25);
+            bed.particles
+        });
+        let [off, springs_off, way] = [&strands, &springs, &bed.particles].map(|particles| rms(particles, &explicit));
+        println!("{name}, damping {damping}: {off} m off, springs {springs_off}, on a way of {way}");
+        assert!(
+            off < 1.1 * springs_off && off < 0.01 * way,
+            "{name}, damping {damping}: {off} m off on a way of {way}"
+        );
+    }
+}
+
+#[test]
+fn the_effort_to_hold_a_strain_holds_it_on_threads() {
+    let mut failures = Vec::new();
+    for (side, max_strain) in [(16, 0.01), (32, 0.01), (32, 0.005)] {
+        let mut bed = hung(ell(side));
+        bed.material = Fabric::default().material().unwrap();
+        bed.tether_slack = 0.002;
+        bed.effort = Effort::to_hold(max_strain, &bed.topology);
+        assert!(bed.effort.levels.is_empty());
+        bed.run(3.0);
+        let strains = (0..60).map(|_| {
+            bed.step(1.0 / 60.0);
+            measure::strain(&bed.particles, &bed.topology).largest
+        });
+        let strain = strains.sum::<f32>() / 60.0;
+        let case = format!("{side} a side, {} substeps: {strain} for {max_strain}", bed.effort.substeps);
+        println!("{case}");
+        failures.extend((strain > max_strain).then_some(case));
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn a_mesh_says_what_it_was_found_to_be() {
+    let texts: [(Mesh, _); 3] = [
+        (ClothGrid::new(1.0, 1.0, 30, 20).into(), "20 rows, 30 columns"),
+        (ell(24), "48 threads"),
+        (Triangle3d::default().into(), "springs in 3 colours"),
+    ];
+    for (mesh, text) in texts {
+        assert_eq!(topology(mesh).weave().to_string(), text);
+    }
+}
