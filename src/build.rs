@@ -9,6 +9,7 @@ mod chart;
 mod coloring;
 mod edges;
 mod geodesic;
+mod grouped;
 mod lattice;
 mod levels;
 mod order;
