@@ -21,6 +21,7 @@ use std::collections::BinaryHeap;
 
 use bevy::{math::FloatOrd, prelude::*};
 
+use super::grouped::Grouped;
 use crate::solver::{GrabTether, Tether, Tethers, Topology};
 
 /// Most pins that hold one particle.
@@ -96,7 +97,7 @@ struct Label {
 #[derive(Clone, Debug)]
 struct Search {
     /// Triangles at each particle, as the other two corners; cells are split along both diagonals.
-    fans: Vec<Vec<[u32; 2]>>,
+    fans: Grouped<[u32; 2]>,
     /// What is settled, nearest first.
     labels: Vec<Vec<Label>>,
     /// The shortest proposal for each particle and pin so far.
@@ -107,13 +108,10 @@ struct Search {
 
 impl Search {
     fn new(topology: &Topology) -> Self {
-        let mut fans = vec![Vec::new(); topology.particle_count()];
         let crossed = topology.cells.iter().flat_map(|&[a, b, c, d]| [[a, b, d], [b, c, d]]);
-        for [i, j, k] in topology.triangles.iter().copied().chain(crossed) {
-            fans[i as usize].push([j, k]);
-            fans[j as usize].push([k, i]);
-            fans[k as usize].push([i, j]);
-        }
+        let triangles = topology.triangles.iter().copied().chain(crossed);
+        let corners = triangles.flat_map(|[i, j, k]| [(i, [j, k]), (j, [k, i]), (k, [i, j])]);
+        let fans = Grouped::new(topology.particle_count(), corners);
         Self {
             fans,
             labels: vec![Vec::new(); topology.particle_count()],
@@ -158,9 +156,13 @@ impl Search {
 
     /// Proposes distances for all neighbours of a particle that has just been settled.
     fn spread(&mut self, rest: &[Vec3], particle: u32, pin: u32, distance: f32) {
-        for index in 0..self.fans[particle as usize].len() {
-            let [a, b] = self.fans[particle as usize][index];
+        for index in self.fans.range(particle) {
+            let [a, b] = self.fans.items()[index];
             for (known, unknown) in [(a, b), (b, a)] {
+                // What is settled can't be settled better.
+                if self.distance_to(pin, unknown).is_some() {
+                    continue;
+                }
                 if let Some(length) = self.distance_to(pin, known) {
                     let length = unfold(rest, [particle, known], [distance, length], unknown);
                     self.propose(unknown, pin, length);

@@ -33,11 +33,12 @@ impl<T: Copy> Grouped<T> {
 
     /// The items of a group.
     pub fn of(&self, group: u32) -> &[T] {
-        &self.items[self.range(group as usize)]
+        &self.items[self.range(group)]
     }
 
     /// The places of a group's items in [`items`](Self::items).
-    pub fn range(&self, group: usize) -> Range<usize> {
+    pub fn range(&self, group: u32) -> Range<usize> {
+        let group = group as usize;
         self.starts[group] as usize..self.starts[group + 1] as usize
     }
 
