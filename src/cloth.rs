@@ -147,7 +147,9 @@ pub enum ClothStatus {
     /// The mesh isn't there yet; the cloth is built as soon as it is.
     #[default]
     Waiting,
-    /// The cloth is simulated.
+    /// The mesh is large and is made into cloth beside the frames. It is drawn as it is until that is done.
+    Building,
+    /// The cloth is simulated. Where its mesh is changed or it is reset, it stays so until the new cloth is done.
     Ready,
     /// The cloth can't be built. It is tried again when the mesh or any of the cloth's components change.
     Failed(ClothError),
