@@ -4,13 +4,13 @@ use core::time::Duration;
 use std::sync::Arc;
 
 use bevy::{
-    math::{Affine3A, Mat3A, Vec3A},
+    math::{Affine3A, Vec3A},
     prelude::*,
 };
 
 use crate::{
     anchor::HeldPin,
-    build::{Tying, weld::NO_PARTICLE},
+    build::{Tying, plan::Awaited, weld::NO_PARTICLE},
     cloth::{Cloth, ClothSolver},
     draw::{carrier::Carrier, shading::particle_normals},
     grab::Grabs,
@@ -70,8 +70,8 @@ pub struct ClothState {
     pub(crate) is_taken_back: bool,
     /// What has been asked for and is done at the next occasion.
     pub(crate) requests: Requests,
-    /// The rotation and scale for which a mesh is being made into this cloth, or into one that takes its place.
-    pub(crate) building: Option<Mat3A>,
+    /// What it waits for, or the cloth that takes its place.
+    pub(crate) awaited: Option<Awaited>,
     /// What has been said once and needn't be said again.
     pub(crate) said: Said,
     /// Buffers of a step.

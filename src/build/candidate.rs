@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use super::{
-    plan::{Plan, PlanCache},
+    plan::{Awaited, Plan, PlanCache, Ties, is_large},
     system::MeshNews,
 };
 use crate::{
@@ -23,8 +23,8 @@ use crate::{
     error::ClothError,
     fabric::Fabric,
     origin,
-    pins::{Pins, targets_by_particle},
-    solver::{Material, Particles},
+    pins::{PinTarget, Pins, targets_by_particle},
+    solver::{Material, Particles, Tethers},
     state::ClothState,
 };
 
@@ -68,7 +68,7 @@ impl CandidateReadOnlyItem<'_, '_> {
 impl CandidateItem<'_, '_> {
     /// Why the cloth has to be built now, if it has to.
     pub(super) fn cause(&self, source: AssetId<Mesh>, news: &MeshNews) -> Option<Cause> {
-        let changed = news.changed.contains(&source) || self.state.building.is_some();
+        let changed = news.changed.contains(&source) || self.state.awaited.is_some();
         let added = news.added.contains(&source);
         let touched = self.cloth.is_changed()
             || self.fabric.is_changed()
@@ -105,7 +105,7 @@ impl CandidateItem<'_, '_> {
         }
     }
 
-    /// The cloth that the entity's components and `mesh`, whose asset is `id`, make. None while a task works on it.
+    /// The cloth that the entity's components and `mesh`, whose asset is `id`, make. None while tasks work on it.
     pub(super) fn build(
         &mut self,
         id: AssetId<Mesh>,
@@ -119,14 +119,9 @@ impl CandidateItem<'_, '_> {
             .ok()
             .filter(anchor::is_invertible)
             .ok_or(ClothError::FlatTransform)?;
-        // What turns without an end is built as it stood at first: by the time that it is done, it has turned further.
-        let turned_since = self.state.building.filter(|begun| is_turned(*begun, pose.matrix3));
-        let begun = turned_since.unwrap_or(pose.matrix3);
-        if self.state.building != Some(begun) {
-            self.state.building = Some(begun);
-        }
-        // Settings count as they are when it is done.
-        if cache.jobs.is_making(id, begun) {
+        let awaited = self.awaited(pose.matrix3);
+        // Settings count as they are when all is done.
+        if cache.is_working_on(id, &awaited) {
             return Ok(None);
         }
         self.cloth.validate()?;
@@ -135,25 +130,68 @@ impl CandidateItem<'_, '_> {
         if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
             return Err(ClothError::NotInMainWorld);
         }
-        let Some(plan) = cache.plan(id, mesh, begun) else { return Ok(None) };
-        self.assemble(mesh, plan?, begun, pose, material, poses).map(Some)
+        let Some(plan) = cache.plan(id, mesh, awaited.to_world) else { return Ok(None) };
+        let plan = plan?;
+        let targets = self.targets(mesh, &plan)?;
+        let to_world = awaited.to_world;
+        let mut tied = None;
+        if is_large(mesh) {
+            tied = self.tied(awaited, &plan, &targets, cache);
+            if tied.is_none() {
+                return Ok(None);
+            }
+        }
+        let mut state = self.state(&plan, to_world, pose, material);
+        anchor::hold(&mut state, &targets, self.entity, poses);
+        if let Some((ties, tethers)) = tied {
+            tie(&mut state, &targets, &ties, tethers);
+        }
+        Ok(Some(Built { state, binding: plan.binding, mesh: self.copy_of(mesh), positions: plan.positions }))
     }
 
-    /// The cloth of a plan that was made for the rotation and scale `begun`, at `pose`.
-    fn assemble(
-        &self,
-        mesh: &Mesh,
-        plan: Plan,
-        begun: Mat3A,
-        pose: Affine3A,
-        material: Material,
-        poses: &Poses,
-    ) -> Result<Built, ClothError> {
+    /// What the cloth waits for, with `to_world` as its rotation and scale by now.
+    ///
+    /// A cloth that turns without an end is made as it stood at first: by the time that it is done, it has turned on.
+    fn awaited(&mut self, to_world: Mat3A) -> Awaited {
+        if let Some(awaited) = &self.state.awaited
+            && is_turned(awaited.to_world, to_world)
+        {
+            return awaited.clone();
+        }
+        let awaited = Awaited { to_world, ties: None };
+        self.state.awaited = Some(awaited.clone());
+        awaited
+    }
+
+    fn targets(&self, mesh: &Mesh, plan: &Plan) -> Result<Vec<PinTarget>, ClothError> {
         let (targets, refused) =
             targets_by_particle(&self.pins, mesh, &plan.binding.particle_of_vertex, &plan.topology);
-        if let Some((_, error)) = refused.into_iter().next() {
-            return Err(error);
+        match refused.into_iter().next() {
+            Some((_, error)) => Err(error),
+            None => Ok(targets),
         }
+    }
+
+    /// The tethers of a large cloth and what they tie: its pins, as they were when the plan was done. None while they are
+    /// being made.
+    fn tied(
+        &mut self,
+        awaited: Awaited,
+        plan: &Plan,
+        targets: &[PinTarget],
+        cache: &mut PlanCache,
+    ) -> Option<(Ties, Tethers)> {
+        let begun = awaited.ties.filter(|ties| Arc::ptr_eq(&ties.topology, &plan.topology));
+        let ties = begun.unwrap_or_else(|| Ties { topology: plan.topology.clone(), pins: pinned(targets) });
+        let tethers = if ties.pins.is_empty() { Some(Tethers::default()) } else { cache.tethers(&ties) };
+        if tethers.is_none() {
+            self.state.awaited = Some(Awaited { ties: Some(ties.clone()), ..awaited });
+        }
+        tethers.map(|tethers| (ties, tethers))
+    }
+
+    /// The state of the cloth at rest at `pose`, whose plan was made for the rotation and scale `to_world`.
+    fn state(&self, plan: &Plan, to_world: Mat3A, pose: Affine3A, material: Material) -> ClothState {
         let rest: Vec<Vec3A> = plan.topology.rest.iter().copied().map(Vec3A::from).collect();
         let mut state = ClothState {
             step_start: rest.clone(),
@@ -161,21 +199,20 @@ impl CandidateItem<'_, '_> {
             origin: pose.translation.into(),
             particle_of_vertex: plan.binding.particle_of_vertex.clone(),
             effort: self.cloth.effort(&plan.topology),
-            topology: plan.topology,
+            topology: plan.topology.clone(),
             settings: Cloth::clone(&self.cloth),
             material: Some(material),
-            pose: Affine3A { matrix3: begun, ..pose },
+            pose: Affine3A { matrix3: to_world, ..pose },
             said: self.state.said,
             // Goes on counting, so that what is drawn of the new cloth isn't taken for the old one's.
             steps: self.state.steps + 1,
             ..default()
         };
-        if begun != pose.matrix3 {
+        if to_world != pose.matrix3 {
             origin::teleport(&mut state, pose);
             state.pose = pose;
         }
-        anchor::hold(&mut state, &targets, self.entity, poses);
-        Ok(Built { state, binding: plan.binding, mesh: self.copy_of(mesh), positions: plan.positions })
+        state
     }
 
     /// The mesh that is drawn. Its particles are in their place already: no skin may deform it once more.
@@ -228,7 +265,7 @@ impl CandidateItem<'_, '_> {
     /// Says why there is no cloth.
     pub(super) fn reject(&mut self, error: ClothError, commands: &mut Commands) {
         self.state.requests.reset = false;
-        self.state.building = None;
+        self.state.awaited = None;
         // By its words: an error that carries a NaN doesn't equal itself.
         if matches!(&*self.status, ClothStatus::Failed(known) if known.to_string() == error.to_string()) {
             return;
@@ -237,6 +274,23 @@ impl CandidateItem<'_, '_> {
         *self.status = ClothStatus::Failed(error.clone());
         commands.trigger(ClothFailed { entity: self.entity, error });
     }
+}
+
+/// Gives a cloth the `tethers` that tie `ties`. Where its pins have changed meanwhile, those to new ones are worked out
+/// while it runs.
+fn tie(state: &mut ClothState, targets: &[PinTarget], ties: &Ties, mut tethers: Tethers) {
+    if ties.pins == pinned(targets) {
+        state.tying = None;
+    } else {
+        tethers.keep(|pin| targets[pin as usize] != PinTarget::Free);
+    }
+    state.tethers = tethers;
+}
+
+/// The particles that are fixed to something.
+fn pinned(targets: &[PinTarget]) -> Arc<[u32]> {
+    let targets = (0..).zip(targets);
+    targets.filter(|(_, target)| **target != PinTarget::Free).map(|(particle, _)| particle).collect()
 }
 
 /// Whether two rotations and scales differ by a rotation at most.

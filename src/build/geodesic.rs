@@ -34,7 +34,7 @@ const TELLING_APART: f32 = 0.8;
 ///
 /// A tether is as long as the cloth between its ends; a particle that no pin can reach has none.
 pub fn tethers(topology: &Topology, pins: &[u32]) -> Tethers {
-    let mut tying = Tying::begin(topology, pins);
+    let mut tying = Tying::begin(pins.to_vec());
     tying.go_on(topology, usize::MAX);
     tying.finish(topology)
 }
@@ -42,28 +42,34 @@ pub fn tethers(topology: &Topology, pins: &[u32]) -> Tethers {
 /// Tethers that are being worked out, a part at a time.
 #[derive(Clone, Debug)]
 pub(crate) struct Tying {
-    search: Search,
+    pins: Vec<u32>,
+    /// None before the first part.
+    search: Option<Search>,
 }
 
 impl Tying {
     /// Begins at `pins`.
-    pub fn begin(topology: &Topology, pins: &[u32]) -> Self {
-        let mut search = Search::new(topology);
-        for &pin in pins {
-            search.propose(pin, pin, 0.0);
-        }
-        Self { search }
+    pub fn begin(pins: Vec<u32>) -> Self {
+        Self { pins, search: None }
     }
 
     /// Settles as many as `most` distances. True where all are settled.
     pub fn go_on(&mut self, topology: &Topology, most: usize) -> bool {
-        self.search.run(&topology.rest, most)
+        let search = self.search.get_or_insert_with(|| {
+            let mut search = Search::new(topology);
+            for &pin in &self.pins {
+                search.propose(pin, pin, 0.0);
+            }
+            search
+        });
+        search.run(&topology.rest, most)
     }
 
     /// The tethers, once all are settled.
     pub fn finish(&self, topology: &Topology) -> Tethers {
         let is_pin = |labels: &[Label]| labels.first().is_some_and(|label| label.distance == 0.0);
-        let held = (0..).zip(&self.search.labels).filter(|(_, labels)| !is_pin(labels));
+        let labels = self.search.iter().flat_map(|search| &search.labels);
+        let held = (0..).zip(labels).filter(|(_, labels)| !is_pin(labels));
         let tether = |particle, label: &Label| Tether { particle, pin: label.pin, length: label.distance };
         let tethers: Vec<Tether> =
             held.flat_map(|(particle, labels)| labels.iter().map(move |label| tether(particle, label))).collect();

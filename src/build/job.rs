@@ -1,106 +1,107 @@
-//! Large meshes become plans in tasks, beside the frames.
+//! Work that takes longer than a frame, in tasks beside the frames.
 
-use bevy::{
-    math::Mat3A,
-    mesh::MeshVertexAttributeId,
-    prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, TaskPool, futures::check_ready},
-};
+use bevy::tasks::{AsyncComputeTaskPool, Task, TaskPool, futures::check_ready};
 
-use super::plan::{KnownPlans, Plan, bits};
-use crate::error::ClothError;
-
-/// Corners of the triangles of a mesh that is built at once, at most. A grid of 70 x 70 vertices has so many and takes
-/// 3 to 5 ms, an irregular mesh twice that: the longest that a frame can spare.
-const MOST_AT_ONCE: usize = 30_000;
-
-/// Whether a mesh is too large to be built within a frame.
-pub(super) fn is_large(mesh: &Mesh) -> bool {
-    let vertices = || mesh.try_attribute(Mesh::ATTRIBUTE_POSITION).map_or(0, |positions| positions.len());
-    mesh.try_indices().map_or_else(|_| vertices(), |indices| indices.len()) > MOST_AT_ONCE
-}
-
-/// The plans that are being made. Cloths of one mesh that wait at the same time wait for the same one.
-#[derive(Debug, Default)]
-pub(super) struct Jobs(Vec<Job>);
-
-/// A plan that is being made.
+/// Jobs by what they are to come to. All who ask for the same wait for the same one.
 #[derive(Debug)]
-struct Job {
-    mesh: AssetId<Mesh>,
-    to_world: Mat3A,
-    task: Task<Done>,
+pub(super) struct Jobs<K, T>(Vec<Job<K, T>>);
+
+#[derive(Debug)]
+struct Job<K, T> {
+    key: K,
+    task: Task<T>,
     /// What has come out of the task.
-    done: Option<Done>,
-    /// Whether a cloth has asked for it in this frame.
+    done: Option<T>,
+    /// Whether somebody has asked for it in this frame.
     is_wanted: bool,
 }
 
-/// A mesh as it was when its plan was begun, and the plan.
-#[derive(Debug)]
-struct Done {
-    mesh: Mesh,
-    plan: Result<Plan, ClothError>,
+impl<K, T> Default for Jobs<K, T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
 }
 
-impl Jobs {
-    /// Drops what nobody waits for any more and what a mesh that `has_changed` was begun from, and looks for what is
-    /// done: once a frame, so that all who wait for the same plan see it in the same frame.
-    pub fn update(&mut self, has_changed: impl Fn(AssetId<Mesh>) -> bool) {
-        self.0.retain_mut(|job| core::mem::take(&mut job.is_wanted) && job.done.is_none() && !has_changed(job.mesh));
+impl<K: PartialEq, T: Send + Sync + 'static> Jobs<K, T> {
+    /// Drops what nobody has asked for since the last time or what `is_stale`, and looks for what is done. Once a frame,
+    /// so that all who wait for the same see it in the same frame.
+    pub fn update(&mut self, is_stale: impl Fn(&K) -> bool) {
+        self.0.retain_mut(|job| core::mem::take(&mut job.is_wanted) && !is_stale(&job.key));
         for job in &mut self.0 {
-            job.done = check_ready(&mut job.task);
+            // A task that is done must not be asked again.
+            if job.done.is_none() {
+                job.done = check_ready(&mut job.task);
+            }
         }
     }
 
-    /// Whether the plan is being made and not done yet.
-    pub fn is_making(&mut self, id: AssetId<Mesh>, to_world: Mat3A) -> bool {
-        self.find(id, to_world).is_some_and(|job| {
-            job.is_wanted = true;
-            job.done.is_none()
-        })
+    /// Whether a job has been begun and isn't done.
+    pub fn is_running(&mut self, key: &K) -> bool {
+        self.ask(key).is_some_and(|job| job.done.is_none())
     }
 
-    /// The plan for `mesh`, if it is done. Begun, if it isn't.
-    pub fn ask(
-        &mut self,
-        id: AssetId<Mesh>,
-        mesh: &Mesh,
-        to_world: Mat3A,
-        known: &KnownPlans,
-    ) -> Option<Result<Plan, ClothError>> {
-        let Some(job) = self.find(id, to_world) else {
-            self.0.push(Job::begin(id, mesh.clone(), to_world, known.clone()));
+    /// What a job has come to, which nobody who asks in each frame loses. None while it runs, and when `work` has just
+    /// been begun for it.
+    pub fn get_or_begin<F>(&mut self, key: K, work: impl FnOnce() -> F) -> Option<&T>
+    where
+        F: Future<Output = T> + Send + Sync + 'static,
+    {
+        if self.ask(&key).is_none() {
+            let task = AsyncComputeTaskPool::get_or_init(TaskPool::new).spawn(work());
+            self.0.push(Job { key, task, done: None, is_wanted: true });
             return None;
-        };
+        }
+        self.0.iter().find(|job| job.key == key)?.done.as_ref()
+    }
+
+    /// Drops a job: what it has come to is of no use.
+    pub fn forget(&mut self, key: &K) {
+        self.0.retain(|job| job.key != *key);
+    }
+
+    fn ask(&mut self, key: &K) -> Option<&mut Job<K, T>> {
+        let job = self.0.iter_mut().find(|job| job.key == *key)?;
         job.is_wanted = true;
-        let done = job.done.as_ref()?;
-        // A change of the mesh is announced a frame late.
-        has_same_contents(&done.mesh, mesh).then(|| done.plan.clone())
-    }
-
-    fn find(&mut self, id: AssetId<Mesh>, to_world: Mat3A) -> Option<&mut Job> {
-        self.0.iter_mut().find(|job| job.mesh == id && bits(job.to_world) == bits(to_world))
+        Some(job)
     }
 }
 
-impl Job {
-    fn begin(id: AssetId<Mesh>, mesh: Mesh, to_world: Mat3A, known: KnownPlans) -> Self {
-        let work = async move {
-            let plan = Plan::make(&mesh, to_world, &known);
-            Done { mesh, plan }
-        };
-        let task = AsyncComputeTaskPool::get_or_init(TaskPool::new).spawn(work);
-        Self { mesh: id, to_world, task, done: None, is_wanted: true }
-    }
-}
-
-/// Whether two meshes have the same attributes and triangles, bit for bit: not even a NaN differs from itself.
-fn has_same_contents<'a>(one: &'a Mesh, other: &'a Mesh) -> bool {
-    let contents = |mesh: &'a Mesh| -> Option<Vec<(MeshVertexAttributeId, &[u8])>> {
-        Some(mesh.try_attributes().ok()?.map(|(attribute, values)| (attribute.id, values.get_bytes())).collect())
+#[cfg(test)]
+mod tests {
+    use std::{
+        sync::{
+            Arc,
+            atomic::{AtomicU32, Ordering},
+        },
+        thread,
     };
-    one.primitive_topology() == other.primitive_topology()
-        && one.try_indices().ok() == other.try_indices().ok()
-        && contents(one) == contents(other)
+
+    use super::*;
+
+    #[test]
+    fn a_job_is_begun_once_and_kept_as_long_as_somebody_asks() {
+        let (mut jobs, begun) = (Jobs::default(), Arc::new(AtomicU32::new(0)));
+        let ask = |jobs: &mut Jobs<&str, u32>| {
+            let begun = begun.clone();
+            jobs.get_or_begin("job", || async move { begun.fetch_add(1, Ordering::Relaxed) }).copied()
+        };
+        let ask_until_done = |jobs: &mut Jobs<&str, u32>| {
+            loop {
+                jobs.update(|_| false);
+                if let Some(done) = ask(jobs) {
+                    return done;
+                }
+                thread::yield_now();
+            }
+        };
+        assert_eq!([ask_until_done(&mut jobs), ask_until_done(&mut jobs)], [0, 0]);
+        assert!(!jobs.is_running(&"job"));
+        // Asked for before the first, and not before the second.
+        jobs.update(|_| false);
+        jobs.update(|_| false);
+        assert!(jobs.0.is_empty());
+        assert_eq!(ask_until_done(&mut jobs), 1);
+        jobs.update(|_| true);
+        assert!(jobs.0.is_empty(), "what is stale is dropped");
+    }
 }

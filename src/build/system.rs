@@ -36,8 +36,7 @@ pub(crate) fn build_cloths(
     poses: Poses,
 ) {
     let news = MeshNews::read(&mut mesh_events);
-    cache.forget_unused();
-    cache.jobs.update(|mesh| news.changed.contains(&mesh));
+    cache.update(|mesh| news.changed.contains(&mesh));
     let sources = sources(&candidates);
     for mut candidate in &mut candidates {
         let source = match candidate.own_mesh {

@@ -3,7 +3,11 @@
 use std::{sync::Arc, thread, time::Duration};
 
 use bevy::{math::Mat3A, prelude::*};
-use bevy_drape::{build::topology_of, prelude::*, solver::Topology};
+use bevy_drape::{
+    build::{tethers, topology_of},
+    prelude::*,
+    solver::Topology,
+};
 
 use crate::common::*;
 
@@ -140,6 +144,35 @@ fn what_is_set_meanwhile_counts() {
     assert_eq!(pinned(&app, cloth), [0, 7]);
     run(&mut app, 20);
     assert!(positions(&app, cloth).iter().all(|p| (p.y - 5.0).abs() < 1e-4));
+}
+
+#[test]
+fn a_large_cloth_has_its_tethers_from_the_first_step_on() {
+    let mut app = headless();
+    let (cloth, _) = begin(&mut app, Pins::edge_corners(ClothEdge::Top));
+    finish(&mut app, cloth);
+    let expected = tethers(&topology(&app, cloth), &[0, SIDE - 1]);
+    assert!(state(&app, cloth).tethers().eq(expected.iter()));
+}
+
+#[test]
+fn pins_that_change_while_tethers_are_made_get_theirs_in_time() {
+    let mut app = headless();
+    let (cloth, _) = begin(&mut app, Pins::indices([0, SIDE - 1]));
+    // By now the particles are there, and their distances to the pins are worked out.
+    thread::sleep(Duration::from_millis(200));
+    app.update();
+    assert_eq!(status(&app, cloth), ClothStatus::Building);
+    app.world_mut().entity_mut(cloth).insert(Pins::indices([0, 7]));
+    app.world_mut().resource_mut::<Time<Virtual>>().pause();
+    finish(&mut app, cloth);
+    assert_eq!(pinned(&app, cloth), [0, 7]);
+    assert!(state(&app, cloth).tethers().all(|tether| tether.pin == 0));
+    assert!(state(&app, cloth).tethers().count() > 0);
+    app.world_mut().resource_mut::<Time<Virtual>>().unpause();
+    run(&mut app, 5);
+    let expected = tethers(&topology(&app, cloth), &[0, 7]);
+    assert!(state(&app, cloth).tethers().eq(expected.iter()));
 }
 
 #[test]
