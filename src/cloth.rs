@@ -37,6 +37,9 @@ impl From<ClothSolver> for Method {
 
 /// Makes the entity's [`Mesh3d`] cloth. All else comes with it: [`Fabric`], [`Pins`], state and status.
 ///
+/// A mesh of up to 10,000 triangles is cloth from the next frame on. A larger one is worked on beside the frames, drawn
+/// as it is, until [`ClothReady`] is sent; pins, fabric, settings and transform count as they are then.
+///
 /// Add, change or remove it at any time. Removing it leaves the mesh as it is drawn at that moment.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]

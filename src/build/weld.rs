@@ -106,6 +106,16 @@ mod tests {
     }
 
     #[test]
+    fn vertices_are_welded_across_the_cells_in_which_they_are_looked_up() {
+        // Pairs closer than the tolerance at places all along a cell, and a triangle that gives the mesh its size.
+        let place = |i: u32| Vec3::new(0.3 + i as f32 * 1e-6, 0.0, 0.0);
+        for i in 0..100 {
+            let p = [Vec3::ZERO, Vec3::X, Vec3::Y, place(i), place(i) + 8e-6];
+            assert_eq!(weld(&p, &[[0, 1, 2], [3, 1, 2], [4, 1, 2]]).particle_of_vertex, [0, 1, 2, 3, 3]);
+        }
+    }
+
+    #[test]
     fn vertices_without_a_triangle_are_no_particle() {
         let welded = weld(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z], &[[0, 1, 3]]);
         assert_eq!(welded.particle_of_vertex, [0, 1, NO_PARTICLE, 2]);
