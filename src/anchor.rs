@@ -68,7 +68,7 @@ pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity,
     }
     let particles: Vec<u32> = pins.iter().map(|pin| pin.particle).collect();
     state.tethers.keep(|pin| particles.binary_search(&pin).is_ok());
-    state.tying = Some(Box::new(Tying::begin(&state.topology, &particles)));
+    state.tying = Some(Box::new(Tying::begin(particles)));
     state.pins = pins;
     set_masses(state);
     // Takes the places of new pins in their targets' space now, before either moves on.

@@ -1,15 +1,18 @@
-//! From a mesh to particles and springs. Only `system` knows the ECS.
+//! From a mesh to particles and springs. Only `system` and `candidate` know the ECS.
 
 use bevy::{math::Mat3A, prelude::*};
 
 use crate::{error::ClothError, solver::Topology};
 
 mod braids;
+mod candidate;
 mod cells;
 mod chart;
 mod coloring;
 mod edges;
 mod geodesic;
+mod grouped;
+mod job;
 mod lattice;
 mod levels;
 mod order;

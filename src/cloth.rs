@@ -37,6 +37,9 @@ impl From<ClothSolver> for Method {
 
 /// Makes the entity's [`Mesh3d`] cloth. All else comes with it: [`Fabric`], [`Pins`], state and status.
 ///
+/// A mesh of up to 10,000 triangles is cloth from the next frame on. A larger one is worked on beside the frames, drawn
+/// as it is, until [`ClothReady`] is sent; pins, fabric, settings and transform count as they are then.
+///
 /// Add, change or remove it at any time. Removing it leaves the mesh as it is drawn at that moment.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
@@ -147,7 +150,9 @@ pub enum ClothStatus {
     /// The mesh isn't there yet; the cloth is built as soon as it is.
     #[default]
     Waiting,
-    /// The cloth is simulated.
+    /// The mesh is large and is made into cloth beside the frames. It is drawn as it is until that is done.
+    Building,
+    /// The cloth is simulated. Where its mesh is changed or it is reset, it stays so until the new cloth is done.
     Ready,
     /// The cloth can't be built. It is tried again when the mesh or any of the cloth's components change.
     Failed(ClothError),

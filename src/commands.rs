@@ -20,7 +20,7 @@ use crate::{
 /// ```
 pub trait ClothCommands {
     /// Puts the cloth back into its rest shape at its entity's present transform and scale, at rest. Then
-    /// [`ClothReset`](crate::prelude::ClothReset) is sent.
+    /// [`ClothReset`](crate::prelude::ClothReset) is sent. A large cloth goes on for some frames until that is worked out.
     fn reset_cloth(&mut self) -> &mut Self;
 
     /// Pins more vertices, where they are now.

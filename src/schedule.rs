@@ -19,8 +19,8 @@ use crate::{
 /// The stages of a cloth's frame, in their order. Games order their systems around them.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClothSystems {
-    /// `PreUpdate`: fabrics are copied from their assets, meshes become cloth, failed ones are tried again, resets are
-    /// done.
+    /// `PreUpdate`: fabrics are copied from their assets, meshes become cloth (large ones once they are worked out), failed
+    /// ones are tried again, resets are done.
     Prepare,
     /// The plugin's schedule: settings, pins, obstacles and winds are read. Move those before it.
     Gather,

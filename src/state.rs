@@ -10,7 +10,7 @@ use bevy::{
 
 use crate::{
     anchor::HeldPin,
-    build::{Tying, weld::NO_PARTICLE},
+    build::{Tying, plan::Awaited, weld::NO_PARTICLE},
     cloth::{Cloth, ClothSolver},
     draw::{carrier::Carrier, shading::particle_normals},
     grab::Grabs,
@@ -70,6 +70,8 @@ pub struct ClothState {
     pub(crate) is_taken_back: bool,
     /// What has been asked for and is done at the next occasion.
     pub(crate) requests: Requests,
+    /// What it waits for, or the cloth that takes its place.
+    pub(crate) awaited: Option<Awaited>,
     /// What has been said once and needn't be said again.
     pub(crate) said: Said,
     /// Buffers of a step.

@@ -1,7 +1,7 @@
 //! What cloth costs in a headless Bevy app, wall time: all that the plugin does, without a renderer.
 
 use std::{
-    io,
+    io, thread,
     time::{Duration, Instant},
 };
 
@@ -72,6 +72,34 @@ fn spawn_hanging(app: &mut App, options: &Options) {
         Fabric { damping: options.damping, drag: 0.0, lift: 0.0, ..default() },
         Pins::edge_corners(ClothEdge::Top),
     ));
+}
+
+/// A hanging cloth until its mesh has become cloth. Time stands still, so that no step is in the frames.
+pub fn building(options: &Options) -> Value {
+    let mut app = headless(ClothPlugin::default());
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+    for _ in 0..WARM_UP {
+        app.update();
+    }
+    spawn_hanging(&mut app, options);
+    let mut status = app.world_mut().query::<&ClothStatus>();
+    let start = Instant::now();
+    let mut frames = Vec::new();
+    while !status.iter(app.world()).all(|status| *status == ClothStatus::Ready) {
+        frames.push(microseconds(|| app.update()) / 1000.0);
+        // As much as a renderer would leave to others.
+        thread::sleep(Duration::from_millis(1));
+    }
+    let until_ready = start.elapsed().as_secs_f64() * 1000.0;
+    let ready = frames.pop();
+    json!({
+        "scene": "build",
+        "n": options.n,
+        "frames": frames.len() + 1,
+        "ms_until_ready": until_ready,
+        "ms_longest_frame_before": frames.into_iter().fold(0.0, f64::max),
+        "ms_frame_in_which_it_is_ready": ready,
+    })
 }
 
 /// A hundred flags on their poles.

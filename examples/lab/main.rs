@@ -53,6 +53,11 @@ enum Experiment {
         #[command(flatten)]
         options: Options,
     },
+    /// What a frame costs in a headless Bevy app while a mesh becomes cloth, and in which it has become cloth
+    Build {
+        #[command(flatten)]
+        options: Options,
+    },
     /// What a frame costs with a hundred flags of 32 x 20 particles in the wind
     Many {
         /// Frames of 1/60 s
@@ -209,6 +214,7 @@ fn run(experiment: &Experiment) -> io::Result<Value> {
         Experiment::Drape { options, mesh } => measure::run("drape", options, scene::drape(options, mesh)?, None),
         Experiment::Threads { options } => threads::compare(options),
         Experiment::App { options } => app::one_cloth(options),
+        Experiment::Build { options } => Ok(app::building(options)),
         Experiment::Many { frames, single_threaded } => Ok(app::many_flags(*frames, *single_threaded)),
     }
 }

@@ -1,5 +1,7 @@
 //! Finds the quads of a mesh that arrives triangulated: pairs of triangles that form a near-rectangle.
 
+use core::array;
+
 use bevy::prelude::*;
 
 use super::edges::{Edges, HalfEdge};
@@ -52,14 +54,13 @@ fn corners_of(one: &HalfEdge, other: &HalfEdge) -> [u32; 4] {
 /// quad that is too far, folded or degenerate.
 fn skew(rest: &[Vec3], corners: [u32; 4]) -> Option<f32> {
     let p = corners.map(|i| rest[i as usize]);
-    let normal = |a: Vec3, b: Vec3, c: Vec3| (b - a).cross(c - a).normalize_or_zero();
-    if normal(p[0], p[1], p[2]).dot(normal(p[0], p[2], p[3])) < LEAST_FLATNESS {
+    let sides: [Vec3; 4] = array::from_fn(|i| (p[(i + 1) % 4] - p[i]).normalize_or_zero());
+    let skew = (0..4).map(|i| sides[i].dot(sides[(i + 1) % 4]).abs()).fold(0.0, f32::max);
+    // Most pairs of triangles: their turn comes before the costlier look at their normals.
+    if skew > MOST_COSINE {
         return None;
     }
-    let cosine = |i: usize| {
-        let (before, after) = (p[(i + 3) % 4] - p[i], p[(i + 1) % 4] - p[i]);
-        before.normalize_or_zero().dot(after.normalize_or_zero()).abs()
-    };
-    let skew = (0..4).map(cosine).fold(0.0, f32::max);
-    (skew <= MOST_COSINE).then_some((skew * 1e3).round())
+    let normal = |a: Vec3, b: Vec3, c: Vec3| (b - a).cross(c - a).normalize_or_zero();
+    let flatness = normal(p[0], p[1], p[2]).dot(normal(p[0], p[2], p[3]));
+    (flatness >= LEAST_FLATNESS).then_some((skew * 1e3).round())
 }

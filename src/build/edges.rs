@@ -1,7 +1,9 @@
 //! The edges of a triangle mesh and what lies on their sides.
 
+use super::grouped::Grouped;
+
 /// A side of a triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct HalfEdge {
     /// The end with the lower index.
     pub a: u32,
@@ -16,24 +18,25 @@ pub(crate) struct HalfEdge {
 /// All sides of all triangles, sorted, so that the sides of one edge stand together and the order is always the same.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Edges {
-    half_edges: Vec<HalfEdge>,
+    half_edges: Grouped<HalfEdge>,
 }
 
 impl Edges {
-    /// Collects the edges of `triangles`.
-    pub fn new(triangles: &[[u32; 3]]) -> Self {
-        let mut half_edges = Vec::with_capacity(3 * triangles.len());
-        for (triangle, &[i, j, k]) in triangles.iter().enumerate() {
-            for (p, q, opposite) in [(i, j, k), (j, k, i), (k, i, j)] {
-                half_edges.push(HalfEdge { a: p.min(q), b: p.max(q), triangle: triangle as u32, opposite });
-            }
-        }
-        half_edges.sort_unstable();
+    /// Collects the edges of `triangles` among `count` particles.
+    pub fn new(count: usize, triangles: &[[u32; 3]]) -> Self {
+        let sides = (0..).zip(triangles).flat_map(|(triangle, &[i, j, k])| {
+            [(i, j, k), (j, k, i), (k, i, j)].map(|(p, q, opposite)| {
+                let (a, b) = (p.min(q), p.max(q));
+                (a, HalfEdge { a, b, triangle, opposite })
+            })
+        });
+        let mut half_edges = Grouped::new(count, sides);
+        half_edges.iter_mut().for_each(<[HalfEdge]>::sort_unstable);
         Self { half_edges }
     }
 
     /// The edges, each as the sides that it has: one at a border, two inside, more where sheets meet.
     pub fn iter(&self) -> impl Iterator<Item = &[HalfEdge]> {
-        self.half_edges.chunk_by(|p, q| (p.a, p.b) == (q.a, q.b))
+        self.half_edges.items().chunk_by(|p, q| (p.a, p.b) == (q.a, q.b))
     }
 }

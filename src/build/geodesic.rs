@@ -21,6 +21,7 @@ use std::collections::BinaryHeap;
 
 use bevy::{math::FloatOrd, prelude::*};
 
+use super::grouped::Grouped;
 use crate::solver::{GrabTether, Tether, Tethers, Topology};
 
 /// Most pins that hold one particle.
@@ -33,7 +34,7 @@ const TELLING_APART: f32 = 0.8;
 ///
 /// A tether is as long as the cloth between its ends; a particle that no pin can reach has none.
 pub fn tethers(topology: &Topology, pins: &[u32]) -> Tethers {
-    let mut tying = Tying::begin(topology, pins);
+    let mut tying = Tying::begin(pins.to_vec());
     tying.go_on(topology, usize::MAX);
     tying.finish(topology)
 }
@@ -41,28 +42,34 @@ pub fn tethers(topology: &Topology, pins: &[u32]) -> Tethers {
 /// Tethers that are being worked out, a part at a time.
 #[derive(Clone, Debug)]
 pub(crate) struct Tying {
-    search: Search,
+    pins: Vec<u32>,
+    /// None before the first part.
+    search: Option<Search>,
 }
 
 impl Tying {
     /// Begins at `pins`.
-    pub fn begin(topology: &Topology, pins: &[u32]) -> Self {
-        let mut search = Search::new(topology);
-        for &pin in pins {
-            search.propose(pin, pin, 0.0);
-        }
-        Self { search }
+    pub fn begin(pins: Vec<u32>) -> Self {
+        Self { pins, search: None }
     }
 
     /// Settles as many as `most` distances. True where all are settled.
     pub fn go_on(&mut self, topology: &Topology, most: usize) -> bool {
-        self.search.run(&topology.rest, most)
+        let search = self.search.get_or_insert_with(|| {
+            let mut search = Search::new(topology);
+            for &pin in &self.pins {
+                search.propose(pin, pin, 0.0);
+            }
+            search
+        });
+        search.run(&topology.rest, most)
     }
 
     /// The tethers, once all are settled.
     pub fn finish(&self, topology: &Topology) -> Tethers {
         let is_pin = |labels: &[Label]| labels.first().is_some_and(|label| label.distance == 0.0);
-        let held = (0..).zip(&self.search.labels).filter(|(_, labels)| !is_pin(labels));
+        let labels = self.search.iter().flat_map(|search| &search.labels);
+        let held = (0..).zip(labels).filter(|(_, labels)| !is_pin(labels));
         let tether = |particle, label: &Label| Tether { particle, pin: label.pin, length: label.distance };
         let tethers: Vec<Tether> =
             held.flat_map(|(particle, labels)| labels.iter().map(move |label| tether(particle, label))).collect();
@@ -96,7 +103,7 @@ struct Label {
 #[derive(Clone, Debug)]
 struct Search {
     /// Triangles at each particle, as the other two corners; cells are split along both diagonals.
-    fans: Vec<Vec<[u32; 2]>>,
+    fans: Grouped<[u32; 2]>,
     /// What is settled, nearest first.
     labels: Vec<Vec<Label>>,
     /// The shortest proposal for each particle and pin so far.
@@ -107,13 +114,10 @@ struct Search {
 
 impl Search {
     fn new(topology: &Topology) -> Self {
-        let mut fans = vec![Vec::new(); topology.particle_count()];
         let crossed = topology.cells.iter().flat_map(|&[a, b, c, d]| [[a, b, d], [b, c, d]]);
-        for [i, j, k] in topology.triangles.iter().copied().chain(crossed) {
-            fans[i as usize].push([j, k]);
-            fans[j as usize].push([k, i]);
-            fans[k as usize].push([i, j]);
-        }
+        let triangles = topology.triangles.iter().copied().chain(crossed);
+        let corners = triangles.flat_map(|[i, j, k]| [(i, [j, k]), (j, [k, i]), (k, [i, j])]);
+        let fans = Grouped::new(topology.particle_count(), corners);
         Self {
             fans,
             labels: vec![Vec::new(); topology.particle_count()],
@@ -158,9 +162,13 @@ impl Search {
 
     /// Proposes distances for all neighbours of a particle that has just been settled.
     fn spread(&mut self, rest: &[Vec3], particle: u32, pin: u32, distance: f32) {
-        for index in 0..self.fans[particle as usize].len() {
-            let [a, b] = self.fans[particle as usize][index];
+        for index in self.fans.range(particle) {
+            let [a, b] = self.fans.items()[index];
             for (known, unknown) in [(a, b), (b, a)] {
+                // What is settled can't be settled better.
+                if self.distance_to(pin, unknown).is_some() {
+                    continue;
+                }
                 if let Some(length) = self.distance_to(pin, known) {
                     let length = unfold(rest, [particle, known], [distance, length], unknown);
                     self.propose(unknown, pin, length);

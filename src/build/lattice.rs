@@ -6,9 +6,7 @@
 //!  down --- . ----- .       and down from there, row after row, across the level ones
 //! ```
 
-use bevy::platform::collections::HashMap;
-
-use super::cells::Cells;
+use super::{cells::Cells, grouped::Grouped};
 use crate::solver::{Lattice, Spring, SpringKind};
 
 /// Particles row after row, as they stand in the mesh.
@@ -33,55 +31,70 @@ impl Rectangle {
 /// It begins at the lowest particle that may be a corner and goes on towards its lowest neighbour: a grid that is
 /// numbered row by row keeps its numbers.
 pub(super) fn find(cells: &Cells, count: usize) -> Option<Rectangle> {
-    let mesh = CellMesh::new(cells)?;
+    let mesh = CellMesh::new(cells, count)?;
     mesh.starts().into_iter().find_map(|start| mesh.rectangle_from(start, count))
 }
 
 /// A side of a cell.
 type Side = (u32, u32);
 
-/// Cells by their sides.
+/// Cells and those beside them.
 struct CellMesh<'a> {
     corners: &'a [[u32; 4]],
-    /// One or two cells of each side, its lower end first.
-    cells_of_side: HashMap<Side, Vec<u32>>,
+    /// The cell across each side of each cell, if there is one: the first side goes from the first corner to the second.
+    neighbours: Vec<[Option<u32>; 4]>,
 }
 
 impl<'a> CellMesh<'a> {
     /// None where a triangle isn't in a cell or a side has more than two cells.
-    fn new(cells: &'a Cells) -> Option<Self> {
+    fn new(cells: &'a Cells, count: usize) -> Option<Self> {
         if cells.of_triangle.iter().any(Option::is_none) {
             return None;
         }
-        let mut cells_of_side: HashMap<Side, Vec<u32>> = HashMap::default();
-        for (cell, [a, b, c, d]) in (0..).zip(cells.corners.iter().copied()) {
-            for side in [(a, b), (b, c), (c, d), (d, a)] {
-                let sides = cells_of_side.entry(sorted(side)).or_default();
-                sides.push(cell);
-                if sides.len() > 2 {
-                    return None;
+        let sides = (0..).zip(&cells.corners).flat_map(|(cell, corners)| {
+            (0..4).map(move |i| {
+                let (low, high) = sorted((corners[i], corners[(i + 1) % 4]));
+                (low, (high, cell, i))
+            })
+        });
+        let mut sides: Grouped<(u32, u32, usize)> = Grouped::new(count, sides);
+        let mut neighbours = vec![[None; 4]; cells.corners.len()];
+        for sides in sides.iter_mut() {
+            sides.sort_unstable();
+            for side in sides.chunk_by(|(p, ..), (q, ..)| p == q) {
+                match *side {
+                    [_] => {}
+                    [(_, one, i), (_, other, j)] => {
+                        neighbours[one as usize][i] = Some(other);
+                        neighbours[other as usize][j] = Some(one);
+                    }
+                    _ => return None,
                 }
             }
         }
-        Some(Self { corners: &cells.corners, cells_of_side })
+        Some(Self { corners: &cells.corners, neighbours })
     }
 
     /// Cells and their sides to start from: at a corner of the whole if it has one, else at its border, else anywhere,
     /// and there at the lowest particle.
     fn starts(&self) -> Vec<(u32, Side)> {
-        let inside = |side: Side| self.cells_of_side[&sorted(side)].len() - 1;
-        let mut starts: Vec<(usize, Side, u32)> = (0..)
-            .zip(self.corners)
-            .flat_map(|(cell, c)| (0..4).map(move |i| (cell, c[i], [c[(i + 1) % 4], c[(i + 3) % 4]])))
-            .flat_map(|(cell, p, [q, r])| {
-                let rank = inside((p, q)) + inside((p, r));
-                [(rank, (p, q), cell), (rank, (p, r), cell)]
+        let corners = || (0..).zip(self.corners).flat_map(|(cell, c)| (0..4).map(move |i| (cell, c[i], i)));
+        // How many of the two sides at a corner of a cell are inside, and the particle there.
+        let rank = |(cell, p, i): (u32, u32, usize)| {
+            let neighbours = &self.neighbours[cell as usize];
+            let inside = [neighbours[i], neighbours[(i + 3) % 4]];
+            (inside.iter().flatten().count(), p)
+        };
+        let best = corners().map(rank).min();
+        let equal = corners().filter(|&corner| Some(rank(corner)) == best);
+        let mut starts: Vec<(Side, u32)> = equal
+            .flat_map(|(cell, p, i)| {
+                let c = &self.corners[cell as usize];
+                [((p, c[(i + 1) % 4]), cell), ((p, c[(i + 3) % 4]), cell)]
             })
             .collect();
         starts.sort_unstable();
-        let best = starts.first().map(|&(rank, (p, _), _)| (rank, p));
-        let equal = starts.into_iter().take_while(|&(rank, (p, _), _)| Some((rank, p)) == best);
-        equal.map(|(_, side, cell)| (cell, side)).collect()
+        starts.into_iter().map(|(side, cell)| (cell, side)).collect()
     }
 
     fn rectangle_from(&self, (cell, (p, along)): (u32, Side), count: usize) -> Option<Rectangle> {
@@ -130,9 +143,10 @@ impl<'a> CellMesh<'a> {
     }
 
     /// The cell on the other side of a cell's side.
-    fn across(&self, cell: u32, side: Side) -> Option<u32> {
-        let cells = self.cells_of_side.get(&sorted(side))?;
-        cells.iter().copied().find(|&other| other != cell)
+    fn across(&self, cell: u32, (p, q): Side) -> Option<u32> {
+        let c = self.corners[cell as usize];
+        let side = (0..4).find(|&i| sorted((c[i], c[(i + 1) % 4])) == sorted((p, q)))?;
+        self.neighbours[cell as usize][side]
     }
 
     /// The corners opposite a side's ends, in their order.

@@ -14,6 +14,7 @@ use bevy::prelude::*;
 use super::{
     cells::Cells,
     edges::{Edges, HalfEdge},
+    grouped::Grouped,
 };
 use crate::solver::SpringKind;
 
@@ -53,9 +54,16 @@ pub(crate) fn find(
     links.extend(bends_along_threads(rest, triangles, &threads, cells));
 
     // Where two kinds claim a pair, the first in the order of `SpringKind` has it.
-    links.sort_unstable_by_key(|&(kind, a, b)| (a, b, kind));
-    links.dedup_by_key(|&mut (_, a, b)| (a, b));
-    links.sort_unstable();
+    let mut at_lower: Grouped<(u32, SpringKind)> =
+        Grouped::new(rest.len(), links.iter().map(|&(kind, a, b)| (a, (b, kind))));
+    at_lower.iter_mut().for_each(<[_]>::sort_unstable);
+    links.clear();
+    for kind in SpringKind::ALL {
+        for a in 0..rest.len() as u32 {
+            let pairs = at_lower.of(a).chunk_by(|(p, _), (q, _)| p == q);
+            links.extend(pairs.filter(|pair| pair[0].1 == kind).map(|pair| (kind, a, pair[0].0)));
+        }
+    }
     links
 }
 
@@ -86,14 +94,14 @@ fn bends_along_threads(rest: &[Vec3], triangles: &[[u32; 3]], threads: &[&[HalfE
             all_cells[particle as usize] &= cell.is_some();
         }
     }
-    let mut arms: Vec<Vec<(u32, &[HalfEdge])>> = vec![Vec::new(); rest.len()];
-    for &sides in threads {
+    let ends = threads.iter().flat_map(|&sides| {
         let HalfEdge { a, b, .. } = sides[0];
-        arms[a as usize].push((b, sides));
-        arms[b as usize].push((a, sides));
-    }
+        [(a, (b, sides)), (b, (a, sides))]
+    });
+    let arms: Grouped<(u32, &[HalfEdge])> = Grouped::new(rest.len(), ends);
     let mut links = Vec::new();
-    for (centre, arms) in arms.iter().enumerate().filter(|&(i, _)| all_cells[i]) {
+    for centre in (0..rest.len()).filter(|&i| all_cells[i]) {
+        let arms = arms.of(centre as u32);
         for (i, &(p, sides_p)) in arms.iter().enumerate() {
             for &(q, sides_q) in &arms[i + 1..] {
                 if !share_cell(sides_p, sides_q, cells) && is_straight(rest, p, centre, q) {

@@ -1,12 +1,13 @@
 //! Puts springs, triangles and areas of a rest shape together.
 
-use bevy::{platform::collections::HashSet, prelude::*};
+use bevy::prelude::*;
 
 use super::{
     braids,
     cells::{self, Cells},
     chart, coloring,
     edges::Edges,
+    grouped::Grouped,
     lattice::{self, Rectangle},
     levels, springs, threads,
 };
@@ -38,7 +39,7 @@ impl Shape {
         if triangles.is_empty() {
             return Err(ClothError::Empty);
         }
-        let edges = Edges::new(&triangles);
+        let edges = Edges::new(rest.len(), &triangles);
         let cells = cells::find(rest, &triangles, &edges);
         let rectangle = lattice::find(&cells, rest.len());
         Ok(Self { triangles, slivers, edges, cells, rectangle })
@@ -76,21 +77,36 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>) -> To
 
 /// Splits triangles with distinct corners into those with an area and slivers, and drops repetitions.
 fn sort_out(rest: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<[u32; 3]>) {
-    let mut seen = HashSet::new();
+    let repeats = repetitions(rest.len(), triangles);
     triangles
         .iter()
-        .filter(|&&[i, j, k]| i != j && j != k && k != i)
-        .filter(|&&triangle| {
-            let mut corners = triangle;
-            corners.sort_unstable();
-            seen.insert(corners)
-        })
+        .zip(repeats)
+        .filter(|&(&[i, j, k], repeats)| !repeats && i != j && j != k && k != i)
+        .map(|(triangle, _)| triangle)
         .partition(|triangle| {
             let [a, b, c] = triangle.map(|i| rest[i as usize]);
             let sides = [b - a, c - b, a - c];
             let longest = sides.map(Vec3::length_squared).into_iter().fold(0.0, f32::max);
             triangle_area(rest, triangle) > SLIVER * longest
         })
+}
+
+/// Whether each triangle has the same corners as one before it.
+fn repetitions(count: usize, triangles: &[[u32; 3]]) -> Vec<bool> {
+    let corners = (0..).zip(triangles).map(|(number, &triangle): (u32, _)| {
+        let mut corners = triangle;
+        corners.sort_unstable();
+        (corners[0], (corners[1], corners[2], number))
+    });
+    let mut at_lowest = Grouped::new(count, corners);
+    let mut repeats = vec![false; triangles.len()];
+    for at_lowest in at_lowest.iter_mut() {
+        at_lowest.sort_unstable();
+        for [(p, q, _), (r, s, number)] in at_lowest.array_windows() {
+            repeats[*number as usize] = (p, q) == (r, s);
+        }
+    }
+    repeats
 }
 
 /// Area that each particle stands for, m². One without a triangle's area gets the mean, so that it isn't weightless.

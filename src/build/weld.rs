@@ -3,10 +3,15 @@
 //! A mesh repeats a vertex wherever its UVs or normals jump. Cloth must not come apart there, so vertices that share a
 //! position share a particle.
 
+use core::iter::successors;
+
 use bevy::{math::IVec3, platform::collections::HashMap, prelude::*};
 
 /// Vertices nearer than this share of the mesh's size are one: exporters and generated seams round differently.
 const TOLERANCE: f32 = 1e-5;
+
+/// Side of the cells in which vertices are looked up, in tolerances: most look into one cell, and few are in each.
+const CELL: f32 = 8.0;
 
 /// In [`Welded::particle_of_vertex`]: the vertex is in no triangle and isn't simulated.
 pub(crate) const NO_PARTICLE: u32 = u32::MAX;
@@ -48,40 +53,44 @@ pub(crate) fn weld(positions: &[Vec3], triangles: &[[u32; 3]]) -> Welded {
     for &vertex in triangles.as_flattened() {
         used[vertex as usize] = true;
     }
-    let cell_size = (size(positions, &used) * TOLERANCE).max(f32::MIN_POSITIVE);
-    let mut particle_at: HashMap<IVec3, u32> = HashMap::default();
+    let (low, high) = bounds(positions, &used);
+    let tolerance = (low.distance(high) * TOLERANCE).max(f32::MIN_POSITIVE);
+    let cell = |place: Vec3| (place / (CELL * tolerance)).floor().as_ivec3();
+    // The latest particle in each cell, and the one before each in its cell.
+    let mut latest: HashMap<IVec3, u32> = HashMap::default();
+    let mut before: Vec<Option<u32>> = Vec::new();
     let mut welded = Welded { particle_of_vertex: vec![NO_PARTICLE; positions.len()], vertex_of_particle: Vec::new() };
     for vertex in (0..positions.len()).filter(|&v| used[v]) {
         let position = positions[vertex];
-        let cell = (position / cell_size).round().as_ivec3();
-        let near = neighbourhood(cell).find_map(|cell| {
-            let &particle = particle_at.get(&cell)?;
+        let place = position - low;
+        let is_near = |&particle: &u32| {
             let first = positions[welded.vertex_of_particle[particle as usize] as usize];
-            (first.distance(position) <= cell_size).then_some(particle)
-        });
+            first.distance(position) <= tolerance
+        };
+        let near = cells_between(cell(place - tolerance), cell(place + tolerance))
+            .flat_map(|cell| successors(latest.get(&cell).copied(), |&particle| before[particle as usize]))
+            .filter(is_near)
+            .min();
         welded.particle_of_vertex[vertex] = near.unwrap_or_else(|| {
             let particle = welded.vertex_of_particle.len() as u32;
             welded.vertex_of_particle.push(vertex as u32);
-            particle_at.insert(cell, particle);
+            before.push(latest.insert(cell(place), particle));
             particle
         });
     }
     welded
 }
 
-/// Diagonal of the box around the `positions` that are used.
-fn size(positions: &[Vec3], used: &[bool]) -> f32 {
+/// Corners of the box around the `positions` that are used.
+fn bounds(positions: &[Vec3], used: &[bool]) -> (Vec3, Vec3) {
     let used = || positions.iter().zip(used).filter(|&(_, &used)| used).map(|(&position, _)| position);
-    let (low, high) = (used().reduce(Vec3::min), used().reduce(Vec3::max));
-    low.zip(high).map_or(0.0, |(low, high)| low.distance(high))
+    (used().reduce(Vec3::min).unwrap_or_default(), used().reduce(Vec3::max).unwrap_or_default())
 }
 
-/// A cell and the 26 around it, itself first: positions that round to different cells can still be close.
-fn neighbourhood(cell: IVec3) -> impl Iterator<Item = IVec3> {
-    let steps = [0, -1, 1];
-    steps.into_iter().flat_map(move |x| {
-        steps.into_iter().flat_map(move |y| steps.into_iter().map(move |z| cell.saturating_add(IVec3::new(x, y, z))))
-    })
+/// All cells from `low` to `high`, both among them.
+fn cells_between(low: IVec3, high: IVec3) -> impl Iterator<Item = IVec3> {
+    (low.x..=high.x)
+        .flat_map(move |x| (low.y..=high.y).flat_map(move |y| (low.z..=high.z).map(move |z| IVec3::new(x, y, z))))
 }
 
 #[cfg(test)]
@@ -94,6 +103,16 @@ mod tests {
         let welded = weld(&p, &[[0, 1, 2], [3, 5, 4]]);
         assert_eq!(welded.particle_of_vertex, [0, 1, 2, 1, 2, 3]);
         assert_eq!(welded.vertex_of_particle, [0, 1, 2, 5]);
+    }
+
+    #[test]
+    fn vertices_are_welded_across_the_cells_in_which_they_are_looked_up() {
+        // Pairs closer than the tolerance at places all along a cell, and a triangle that gives the mesh its size.
+        let place = |i: u32| Vec3::new(0.3 + i as f32 * 1e-6, 0.0, 0.0);
+        for i in 0..100 {
+            let p = [Vec3::ZERO, Vec3::X, Vec3::Y, place(i), place(i) + 8e-6];
+            assert_eq!(weld(&p, &[[0, 1, 2], [3, 1, 2], [4, 1, 2]]).particle_of_vertex, [0, 1, 2, 3, 3]);
+        }
     }
 
     #[test]

@@ -38,6 +38,7 @@ fn tell_apart(found: &mut [(Entity, String)]) {
 pub(super) fn trouble(world: &World, chosen: &[Entity]) -> Option<(&'static str, String)> {
     chosen.iter().find_map(|&cloth| match world.get::<ClothStatus>(cloth)? {
         ClothStatus::Waiting => Some(("Waits for its mesh", "It is built once its Mesh3d has loaded.".into())),
+        ClothStatus::Building => Some(("Is being built", "Its mesh is large: that takes some frames.".into())),
         ClothStatus::Failed(error) => Some(("Can't be built", error.to_string())),
         ClothStatus::Ready => None,
     })

@@ -41,6 +41,7 @@ fn result(mesh: Mesh, more: impl Bundle) -> Result<(App, Entity), ClothError> {
             Err(error)
         }
         ClothStatus::Waiting => panic!("the mesh is there"),
+        ClothStatus::Building => panic!("the mesh is small"),
     }
 }
 

@@ -22,6 +22,7 @@ mod far_away;
 mod forces;
 mod grabs;
 mod gravity;
+mod large_meshes;
 mod late_mesh;
 mod missing_plugins;
 mod obstacles;

@@ -1,0 +1,302 @@
+//! A cloth that may have to be built: whether it has, what it becomes, and how it is told.
+
+use std::sync::Arc;
+
+use bevy::{
+    asset::RenderAssetUsages,
+    ecs::query::QueryData,
+    math::{Affine3A, Mat3A, Vec3A},
+    prelude::*,
+};
+
+use super::{
+    plan::{Awaited, Plan, PlanCache, Ties, is_large},
+    system::MeshNews,
+};
+use crate::{
+    anchor::{self, Poses},
+    cloth::{Cloth, ClothFailed, ClothReady, ClothReset, ClothStatus, ResetCause},
+    draw::{
+        binding::Binding,
+        mesh::{ClothMesh, Drawn},
+    },
+    error::ClothError,
+    fabric::Fabric,
+    origin,
+    pins::{PinTarget, Pins, targets_by_particle},
+    solver::{Material, Particles, Tethers},
+    state::ClothState,
+};
+
+/// All that building a cloth looks at.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct Candidate {
+    entity: Entity,
+    pub mesh: &'static mut Mesh3d,
+    cloth: Ref<'static, Cloth>,
+    fabric: Ref<'static, Fabric>,
+    pins: Ref<'static, Pins>,
+    transform: Ref<'static, GlobalTransform>,
+    status: &'static mut ClothStatus,
+    state: &'static mut ClothState,
+    pub own_mesh: Option<&'static ClothMesh>,
+}
+
+/// Why a cloth is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cause {
+    First,
+    Again(ResetCause),
+}
+
+/// A cloth that is ready to take its place.
+pub(super) struct Built {
+    state: ClothState,
+    binding: Arc<Binding>,
+    mesh: Mesh,
+    positions: Vec<[f32; 3]>,
+}
+
+impl CandidateReadOnlyItem<'_, '_> {
+    /// Whether its `Mesh3d` isn't its own mesh: the cloth isn't built yet, or was given another.
+    pub(super) fn has_foreign_mesh(&self) -> bool {
+        self.own_mesh.is_none_or(|own| own.drawn != self.mesh.0)
+    }
+}
+
+impl CandidateItem<'_, '_> {
+    /// Why the cloth has to be built now, if it has to.
+    pub(super) fn cause(&self, source: AssetId<Mesh>, news: &MeshNews) -> Option<Cause> {
+        let changed = news.changed.contains(&source) || self.state.awaited.is_some();
+        let added = news.added.contains(&source);
+        let touched = self.cloth.is_changed()
+            || self.fabric.is_changed()
+            || self.pins.is_changed()
+            || self.transform.is_changed()
+            || self.mesh.is_changed();
+        let reset = self.state.requests.reset;
+        match &*self.status {
+            ClothStatus::Waiting | ClothStatus::Building => Some(Cause::First),
+            ClothStatus::Failed(_) => (touched || changed || added || reset).then_some(Cause::First),
+            ClothStatus::Ready if reset => Some(Cause::Again(ResetCause::Requested)),
+            ClothStatus::Ready => match self.own_mesh {
+                // Only its status has come from elsewhere, as from a scene.
+                None => Some(Cause::First),
+                // `Mesh3d` was replaced, be it by the mesh that the cloth was made from.
+                Some(own) if own.drawn != self.mesh.0 => Some(Cause::Again(ResetCause::Rebuilt)),
+                Some(_) => changed.then_some(Cause::Again(ResetCause::Rebuilt)),
+            },
+        }
+    }
+
+    /// The mesh isn't there yet: it is looked for again in the next frame.
+    pub(super) fn wait_for_mesh(&mut self) {
+        if matches!(*self.status, ClothStatus::Failed(_) | ClothStatus::Building) {
+            *self.status = ClothStatus::Waiting;
+        }
+    }
+
+    /// A task works on the mesh: what it has come to is asked again in the next frame. What runs goes on till then, and
+    /// what failed has failed until it is known to be better.
+    pub(super) fn wait_for_plan(&mut self, cause: Cause) {
+        if cause == Cause::First && !matches!(*self.status, ClothStatus::Failed(_)) {
+            self.status.set_if_neq(ClothStatus::Building);
+        }
+    }
+
+    /// The cloth that the entity's components and `mesh`, whose asset is `id`, make. None while tasks work on it.
+    pub(super) fn build(
+        &mut self,
+        id: AssetId<Mesh>,
+        mesh: &Mesh,
+        cache: &mut PlanCache,
+        poses: &Poses,
+    ) -> Result<Option<Built>, ClothError> {
+        let pose = poses
+            .compute_global_transform(self.entity)
+            .map(|global| global.affine())
+            .ok()
+            .filter(anchor::is_invertible)
+            .ok_or(ClothError::FlatTransform)?;
+        let awaited = self.awaited(pose.matrix3);
+        // Settings count as they are when all is done.
+        if cache.is_working_on(id, &awaited) {
+            return Ok(None);
+        }
+        self.cloth.validate()?;
+        let material = self.fabric.material()?;
+        // What is drawn is a copy: it would leave for the render world with the first frame, and couldn't be written.
+        if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
+            return Err(ClothError::NotInMainWorld);
+        }
+        let Some(plan) = cache.plan(id, mesh, awaited.to_world) else { return Ok(None) };
+        let plan = plan?;
+        let targets = self.targets(mesh, &plan)?;
+        let to_world = awaited.to_world;
+        let mut tied = None;
+        if is_large(mesh) {
+            tied = self.tied(awaited, &plan, &targets, cache);
+            if tied.is_none() {
+                return Ok(None);
+            }
+        }
+        let mut state = self.state(&plan, to_world, pose, material);
+        anchor::hold(&mut state, &targets, self.entity, poses);
+        if let Some((ties, tethers)) = tied {
+            tie(&mut state, &targets, &ties, tethers);
+        }
+        Ok(Some(Built { state, binding: plan.binding, mesh: self.copy_of(mesh), positions: plan.positions }))
+    }
+
+    /// What the cloth waits for, with `to_world` as its rotation and scale by now.
+    ///
+    /// A cloth that turns without an end is made as it stood at first: by the time that it is done, it has turned on.
+    fn awaited(&mut self, to_world: Mat3A) -> Awaited {
+        if let Some(awaited) = &self.state.awaited
+            && is_turned(awaited.to_world, to_world)
+        {
+            return awaited.clone();
+        }
+        let awaited = Awaited { to_world, ties: None };
+        self.state.awaited = Some(awaited.clone());
+        awaited
+    }
+
+    fn targets(&self, mesh: &Mesh, plan: &Plan) -> Result<Vec<PinTarget>, ClothError> {
+        let (targets, refused) =
+            targets_by_particle(&self.pins, mesh, &plan.binding.particle_of_vertex, &plan.topology);
+        match refused.into_iter().next() {
+            Some((_, error)) => Err(error),
+            None => Ok(targets),
+        }
+    }
+
+    /// The tethers of a large cloth and what they tie: its pins, as they were when the plan was done. None while they are
+    /// being made.
+    fn tied(
+        &mut self,
+        awaited: Awaited,
+        plan: &Plan,
+        targets: &[PinTarget],
+        cache: &mut PlanCache,
+    ) -> Option<(Ties, Tethers)> {
+        let begun = awaited.ties.filter(|ties| Arc::ptr_eq(&ties.topology, &plan.topology));
+        let ties = begun.unwrap_or_else(|| Ties { topology: plan.topology.clone(), pins: pinned(targets) });
+        let tethers = if ties.pins.is_empty() { Some(Tethers::default()) } else { cache.tethers(&ties) };
+        if tethers.is_none() {
+            self.state.awaited = Some(Awaited { ties: Some(ties.clone()), ..awaited });
+        }
+        tethers.map(|tethers| (ties, tethers))
+    }
+
+    /// The state of the cloth at rest at `pose`, whose plan was made for the rotation and scale `to_world`.
+    fn state(&self, plan: &Plan, to_world: Mat3A, pose: Affine3A, material: Material) -> ClothState {
+        let rest: Vec<Vec3A> = plan.topology.rest.iter().copied().map(Vec3A::from).collect();
+        let mut state = ClothState {
+            step_start: rest.clone(),
+            particles: Particles::at_rest(rest, &plan.topology, &material),
+            origin: pose.translation.into(),
+            particle_of_vertex: plan.binding.particle_of_vertex.clone(),
+            effort: self.cloth.effort(&plan.topology),
+            topology: plan.topology.clone(),
+            settings: Cloth::clone(&self.cloth),
+            material: Some(material),
+            pose: Affine3A { matrix3: to_world, ..pose },
+            said: self.state.said,
+            // Goes on counting, so that what is drawn of the new cloth isn't taken for the old one's.
+            steps: self.state.steps + 1,
+            ..default()
+        };
+        if to_world != pose.matrix3 {
+            origin::teleport(&mut state, pose);
+            state.pose = pose;
+        }
+        state
+    }
+
+    /// The mesh that is drawn. Its particles are in their place already: no skin may deform it once more.
+    fn copy_of(&self, mesh: &Mesh) -> Mesh {
+        let mut copy = mesh.clone();
+        let skin = [Mesh::ATTRIBUTE_JOINT_INDEX, Mesh::ATTRIBUTE_JOINT_WEIGHT];
+        if skin.map(|attribute| copy.try_remove_attribute(attribute).is_ok()).contains(&true) {
+            warn!("cloth {} is simulated from its bind pose: its skin isn't followed yet", self.entity);
+        }
+        copy
+    }
+
+    /// Lets what was built take its place.
+    pub(super) fn accept(
+        &mut self,
+        built: Built,
+        cause: Cause,
+        source: Handle<Mesh>,
+        meshes: &mut Assets<Mesh>,
+        commands: &mut Commands,
+    ) {
+        let entity = self.entity;
+        // A rebuilt cloth keeps its own mesh, with new contents; that of a copied entity is another's.
+        let own = self.own_mesh.map(|own| &own.drawn);
+        let drawn = match own.filter(|&own| cause != Cause::First && meshes.contains(own)) {
+            Some(own) => {
+                if let Some(mut mesh) = meshes.get_mut(own) {
+                    *mesh = built.mesh;
+                }
+                own.clone()
+            }
+            None => meshes.add(built.mesh),
+        };
+        self.state.release_all();
+        let grabs = core::mem::take(&mut self.state.grabs);
+        *self.state = ClothState { grabs, ..built.state };
+        *self.status = ClothStatus::Ready;
+        if self.mesh.0 != drawn {
+            self.mesh.0 = drawn.clone();
+        }
+        let shape = Drawn::new(built.positions);
+        let own_mesh = ClothMesh { source, drawn, binding: built.binding, shape };
+        commands.entity(entity).try_insert(own_mesh);
+        match cause {
+            Cause::First => commands.trigger(ClothReady { entity }),
+            Cause::Again(cause) => commands.trigger(ClothReset { entity, cause }),
+        }
+    }
+
+    /// Says why there is no cloth.
+    pub(super) fn reject(&mut self, error: ClothError, commands: &mut Commands) {
+        self.state.requests.reset = false;
+        self.state.awaited = None;
+        // By its words: an error that carries a NaN doesn't equal itself.
+        if matches!(&*self.status, ClothStatus::Failed(known) if known.to_string() == error.to_string()) {
+            return;
+        }
+        warn!("cloth {} can't be built: {error}", self.entity);
+        *self.status = ClothStatus::Failed(error.clone());
+        commands.trigger(ClothFailed { entity: self.entity, error });
+    }
+}
+
+/// Gives a cloth the `tethers` that tie `ties`. Where its pins have changed meanwhile, those to new ones are worked out
+/// while it runs.
+fn tie(state: &mut ClothState, targets: &[PinTarget], ties: &Ties, mut tethers: Tethers) {
+    if ties.pins == pinned(targets) {
+        state.tying = None;
+    } else {
+        tethers.keep(|pin| targets[pin as usize] != PinTarget::Free);
+    }
+    state.tethers = tethers;
+}
+
+/// The particles that are fixed to something.
+fn pinned(targets: &[PinTarget]) -> Arc<[u32]> {
+    let targets = (0..).zip(targets);
+    targets.filter(|(_, target)| **target != PinTarget::Free).map(|(particle, _)| particle).collect()
+}
+
+/// Whether two rotations and scales differ by a rotation at most.
+fn is_turned(one: Mat3A, other: Mat3A) -> bool {
+    // Much more than the rounding along a long chain of parents, and less than any change that shows.
+    const ROUNDING: f32 = 1e-4;
+    let turn = other * one.inverse();
+    turn.determinant() > 0.0 && (turn.transpose() * turn).abs_diff_eq(Mat3A::IDENTITY, ROUNDING)
+}
