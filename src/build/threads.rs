@@ -230,7 +230,7 @@ mod tests {
             (SpringKind::Structural, Spring { a, b, rest: rest[a as usize].distance(rest[b as usize]) })
         };
         let springs: Vec<_> = path.array_windows().map(spring).collect();
-        let threads = find(&rest, &Edges::new(&[]), &springs);
+        let threads = find(&rest, &Edges::new(rest.len(), &[]), &springs);
         assert_eq!(threads.len(), 2);
         assert_eq!(threads.iter().map(|thread| thread.springs.len()).sum::<usize>(), springs.len());
         for thread in threads {

@@ -104,7 +104,7 @@ fn cloths_that_wait_for_one_mesh_wait_for_one_task() {
 #[test]
 fn what_is_no_longer_cloth_is_not_built() {
     let mut app = headless();
-    let (despawned, _) = begin(&mut app, ());
+    let despawned = spawn_cloth(&mut app, large(), ());
     let (removed, mesh) = begin(&mut app, ());
     app.world_mut().despawn(despawned);
     app.world_mut().entity_mut(removed).remove::<Cloth>();

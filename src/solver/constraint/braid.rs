@@ -72,7 +72,7 @@ fn solve_braids<S: Simd, const DAMPED: bool>(
         }
         let (count, stride) = (nodes.len(), nodes.len());
         let mut pack = Pack { position, previous, inverse_mass, stride };
-        if let Some(constants) = yarn.bend {
+        if let Some(constants) = yarn.bend.filter(|_| !bend.is_empty()) {
             pack.solve_bends::<S, f32x8<S>, DAMPED>(simd, count, bend, constants);
         }
         if yarn.stretch.acts() {
