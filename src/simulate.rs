@@ -1,5 +1,7 @@
 //! One step of every cloth: what was gathered goes in, the new state comes out.
 
+use std::sync::{Mutex, PoisonError};
+
 use bevy::{ecs::system::NonSendMarker, math::Vec3A, platform::time::Instant, prelude::*, tasks::TaskPool};
 
 use crate::{
@@ -7,10 +9,24 @@ use crate::{
     collider::Obstacles,
     parallel,
     schedule::ClothRun,
-    solver::{self, StepContext},
+    solver::{self, Scratch, StepContext},
     state::{ClothState, Work},
     wind::Winds,
 };
+
+/// Working memory for as many cloths as are stepped at a time, which is far less than for all.
+#[derive(Default)]
+pub(crate) struct Workshop(Mutex<Vec<Scratch>>);
+
+impl Workshop {
+    /// Lends working memory. The latest that was handed back comes first: it may still be in the processor's cache.
+    fn with_scratch(&self, work: impl FnOnce(&mut Scratch)) {
+        let idle = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut scratch = idle().pop().unwrap_or_default();
+        work(&mut scratch);
+        idle().push(scratch);
+    }
+}
 
 /// Steps all cloths, several at a time: each reads what is shared and writes only itself, so the order doesn't matter.
 pub(crate) fn step_cloths(
@@ -20,6 +36,7 @@ pub(crate) fn step_cloths(
     gravity: Res<ClothGravity>,
     obstacles: Res<Obstacles>,
     winds: Res<Winds>,
+    workshop: Local<Workshop>,
     _main_thread: NonSendMarker,
 ) {
     let gravity = if gravity.0.is_finite() {
@@ -31,7 +48,7 @@ pub(crate) fn step_cloths(
     let pool = parallel::pool(run.parallel);
     parallel::for_each(&mut cloths, run.parallel, |(status, mut state)| {
         if *status == ClothStatus::Ready {
-            step_cloth(&mut state, &time, gravity, &obstacles, &winds, pool);
+            workshop.with_scratch(|scratch| step_cloth(&mut state, &time, gravity, &obstacles, &winds, pool, scratch));
         }
     });
 }
@@ -43,6 +60,7 @@ fn step_cloth(
     obstacles: &Obstacles,
     winds: &Winds,
     pool: Option<&TaskPool>,
+    scratch: &mut Scratch,
 ) {
     let Some(material) = state.material else { return };
     state.is_taken_back = false;
@@ -51,7 +69,7 @@ fn step_cloth(
         return;
     }
     let Cloth { solver, max_substeps, gravity_scale, max_velocity, .. } = state.settings;
-    let Work { anchors, grabs, obstacles: near, winds: felt, scratch } = &mut state.work;
+    let Work { anchors, grabs, obstacles: near, winds: felt } = &mut state.work;
     obstacles.around(state.origin, state.settings.collision_mask, near);
     winds.around(state.origin, felt);
     let ctx = StepContext {

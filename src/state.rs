@@ -15,8 +15,8 @@ use crate::{
     draw::{carrier::Carrier, shading::particle_normals},
     grab::Grabs,
     solver::{
-        self, Anchor, Effort, Energy, Grab, Material, Obstacle, Particles, Scratch, StepReport, Strain, Tether,
-        Tethers, Topology, Weave, WindSource,
+        self, Anchor, Effort, Energy, Grab, Material, Obstacle, Particles, StepReport, Strain, Tether, Tethers,
+        Topology, Weave, WindSource,
     },
 };
 
@@ -105,7 +105,6 @@ pub(crate) struct Work {
     pub grabs: Vec<Grab>,
     pub obstacles: Vec<Obstacle>,
     pub winds: Vec<WindSource>,
-    pub scratch: Scratch,
 }
 
 impl ClothState {

@@ -1,7 +1,11 @@
-//! A step doesn't allocate.
+//! A step doesn't allocate, and a cloth keeps little.
 
-use bevy::prelude::*;
-use bevy_drape::prelude::{ClothGrid, ClothGrip, Fabric};
+use bevy::{math::Vec3A, prelude::*};
+use bevy_drape::{
+    build,
+    prelude::{ClothGrid, ClothGrip, Fabric},
+    solver::Particles,
+};
 
 use crate::{
     bench_bed::{ALL, Bed},
@@ -27,4 +31,21 @@ fn a_step_allocates_nothing_once_it_has_run() {
             assert_eq!(info.count_total, 0, "{method:?}: {info:?}");
         }
     }
+}
+
+#[test]
+fn a_grid_keeps_at_most_120_bytes_a_particle() {
+    let material = Fabric::default().material().unwrap();
+    let topology = Bed::new(Mesh::from(ClothGrid::new(1.0, 1.0, 64, 64).lying()), material).topology;
+    let info = allocation_counter::measure(|| {
+        let rest: Vec<Vec3A> = topology.rest.iter().copied().map(Vec3A::from).collect();
+        // Where it was when the step began is kept for drawing.
+        let step_start = rest.clone();
+        let particles = Particles::at_rest(rest, &topology, &material);
+        core::mem::forget((step_start, particles));
+    });
+    let pins = [0, 63];
+    let tethers = allocation_counter::measure(|| core::mem::forget(build::tethers(&topology, &pins)));
+    let bytes = (info.bytes_current + tethers.bytes_current) as f32 / topology.particle_count() as f32;
+    assert!((80.0..=120.0).contains(&bytes), "{bytes} B");
 }
