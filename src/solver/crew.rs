@@ -46,7 +46,10 @@ pub(super) fn run(pool: &TaskPool, phases: &[Phase]) {
 /// How far a phase is.
 #[derive(Default)]
 struct Progress {
+    /// How many units have been taken, and how many of them from either end.
     taken: AtomicUsize,
+    first: AtomicUsize,
+    last: AtomicUsize,
     done: AtomicUsize,
     asleep: Mutex<()>,
     bell: Condvar,
@@ -56,10 +59,15 @@ impl Progress {
     /// Works along until all units are done.
     fn work(&self, phase: &Phase, worker: usize) {
         loop {
-            let unit = self.taken.fetch_add(1, Ordering::Relaxed);
-            if unit >= phase.units {
+            if self.taken.fetch_add(1, Ordering::Relaxed) >= phase.units {
                 break;
             }
+            // Every other worker begins at the far end: what one had in the last phase it mostly has in the next.
+            let unit = if worker % 2 == 0 {
+                self.first.fetch_add(1, Ordering::Relaxed)
+            } else {
+                phase.units - 1 - self.last.fetch_add(1, Ordering::Relaxed)
+            };
             let _done = Done { progress: self, units: phase.units };
             (phase.work)(unit, worker);
         }

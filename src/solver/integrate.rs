@@ -31,7 +31,7 @@ pub(super) fn predict(lanes: &mut Lanes, motion: Motion, instructions: Instructi
 
 #[inline(always)]
 fn predict_eights<S: Simd>(simd: S, run: &mut Run, motion: Motion) {
-    let all = run.position.iter_mut().zip(&*run.previous).zip(&mut *run.velocity).zip(run.inverse_mass);
+    let all = run.position.iter_mut().zip(&*run.previous).zip(&mut *run.velocity).zip(&*run.inverse_mass);
     for (i, (((position, previous), velocity), w)) in all.enumerate() {
         let (place, before) = (Vec3x8::load(simd, previous), Vec3x8::load(simd, velocity));
         let (place, velocity_after) = motion.of(simd, run.first + i, place, before, lane(simd, w));
@@ -94,7 +94,7 @@ fn finish_eights<S: Simd>(simd: S, run: &mut Run, Finish { limit, h, next }: Fin
     let around = Vec3x8::splat(simd, limit.around.to_array());
     let (duration, rate) = (f32x8::splat(simd, h), f32x8::splat(simd, 1.0 / h));
     let most = f32x8::splat(simd, limit.most);
-    let all = run.position.iter_mut().zip(&mut *run.previous).zip(&mut *run.velocity).zip(run.inverse_mass);
+    let all = run.position.iter_mut().zip(&mut *run.previous).zip(&mut *run.velocity).zip(&*run.inverse_mass);
     for (i, (((position, previous), velocity), w)) in all.enumerate() {
         let (place, w) = (Vec3x8::load(simd, position), lane(simd, w));
         let before = Vec3x8::load(simd, velocity);

@@ -1,6 +1,8 @@
 //! The particles of one cloth while a step runs: in blocks of eight, component by component, so that eight can be worked
 //! on side by side.
 
+use core::ops::Range;
+
 use bevy::math::{Vec3A, Vec4};
 use fearless_simd::{dispatch, f32x4, f32x8, prelude::*};
 
@@ -9,9 +11,10 @@ use super::{
     simd::{Instructions, LANES, Lane, lane},
 };
 
-/// Rows that are taken over at a time. Those of a large cloth are a page of memory each: more of them at once than the
-/// processor has pages at hand is slow.
-const NEAR_ROWS: usize = 16;
+/// Rows of particles that stand together in memory, a multiple of four: the order of diagonals goes by four rows.
+///
+/// As many as fit into a processor's own cache in a cloth of some hundred columns.
+pub const BAND: usize = 64;
 
 /// Eight points or directions: all x, all y, all z.
 pub type Block = [Lane; 3];
@@ -19,8 +22,8 @@ pub type Block = [Lane; 3];
 /// In which block, and where in it, a particle stands: its slot.
 ///
 /// Particles in rows and columns stand in blocks of eight columns, and those one below the other: a column of blocks is
-/// eight threads side by side. Others stand in their own order, as if in one row. The last column of blocks is filled
-/// up with slots in which nobody stands.
+/// eight threads side by side. That is so within each band of rows, and band stands after band. Others stand in their own
+/// order, as if in one row. The last column of blocks is filled up with slots in which nobody stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Order {
     pub rows: usize,
@@ -50,7 +53,9 @@ impl Order {
 
     /// The slot of the particle at a row and column.
     pub fn slot_at(&self, row: usize, column: usize) -> usize {
-        ((column / LANES) * self.rows + row) * LANES + column % LANES
+        let first = row - row % BAND;
+        let rows = BAND.min(self.rows - first);
+        (first * self.pack_count() + column / LANES * rows + row - first) * LANES + column % LANES
     }
 
     /// The slot of a particle.
@@ -60,33 +65,58 @@ impl Order {
         if self.rows == 1 { particle } else { self.slot_at(particle / columns, particle % columns) }
     }
 
+    /// All bands.
+    #[inline(always)]
+    pub fn bands(self) -> impl ExactSizeIterator<Item = Band> + Clone {
+        (0..self.rows).step_by(BAND).map(move |first| Band { first, rows: BAND.min(self.rows - first), order: self })
+    }
+
     /// First particle and number of particles of each block.
     #[inline(always)]
     pub fn blocks(self) -> impl Iterator<Item = (usize, usize)> {
-        let Self { rows, columns } = self;
-        (0..columns).step_by(LANES).flat_map(move |column| {
-            let count = LANES.min(columns - column);
-            (0..rows).map(move |row| (row * columns + column, count))
-        })
-    }
-
-    /// Number, first particle and number of particles of each block, a few rows at a time: what is next to each other
-    /// among the particles and among the blocks is visited within a short time.
-    #[inline(always)]
-    fn near_blocks(self) -> impl Iterator<Item = (usize, usize, usize)> {
-        let Self { rows, columns } = self;
-        (0..rows).step_by(NEAR_ROWS).flat_map(move |near| {
-            (0..columns).step_by(LANES).flat_map(move |column| {
-                let count = LANES.min(columns - column);
-                let block = move |row: usize| (column / LANES * rows + row, row * columns + column, count);
-                (near..rows.min(near + NEAR_ROWS)).map(block)
-            })
+        self.bands().flat_map(|band| {
+            let first = band.particles().start;
+            band.particles_of_blocks().map(move |some| (first + some.start, some.len()))
         })
     }
 
     /// The particle in each lane of a block, if there is one.
     pub fn particles(self) -> impl Iterator<Item = [Option<u32>; LANES]> {
         self.blocks().map(|(first, count)| core::array::from_fn(|l| (l < count).then_some((first + l) as u32)))
+    }
+}
+
+/// Some rows of an order, whose blocks stand together.
+#[derive(Clone, Copy, Debug)]
+pub struct Band {
+    /// Number of the first row.
+    pub first: usize,
+    /// Number of rows.
+    pub rows: usize,
+    order: Order,
+}
+
+impl Band {
+    /// The blocks.
+    pub fn blocks(self) -> Range<usize> {
+        let packs = self.order.pack_count();
+        self.first * packs..(self.first + self.rows) * packs
+    }
+
+    /// The particles.
+    pub fn particles(self) -> Range<usize> {
+        let columns = self.order.columns;
+        self.first * columns..(self.first + self.rows) * columns
+    }
+
+    /// The particles of each block, numbered within the band.
+    #[inline(always)]
+    fn particles_of_blocks(self) -> impl Iterator<Item = Range<usize>> {
+        let columns = self.order.columns;
+        (0..columns).step_by(LANES).flat_map(move |column| {
+            let count = LANES.min(columns - column);
+            (0..self.rows).map(move |row| row * columns + column..row * columns + column + count)
+        })
     }
 }
 
@@ -119,37 +149,34 @@ impl Points {
     /// Takes over one point for each particle.
     pub fn load(&mut self, order: Order, points: &[Vec3A], instructions: Instructions) {
         self.resize(order.block_count());
-        dispatch!(instructions.level(), simd => self.load_blocks(simd, order, points));
-    }
-
-    #[inline(always)]
-    fn load_blocks<S: Simd>(&mut self, simd: S, order: Order, points: &[Vec3A]) {
-        for (block, first, count) in order.near_blocks() {
-            let points = &points[first..first + count];
-            let mut rows = [[0.0; 4]; LANES];
-            for (row, &point) in rows.iter_mut().zip(points) {
-                *row = Vec4::from((point, 0.0)).to_array();
-            }
-            let [a, b, c, d, e, f, g, h] = &rows;
-            let [x, y, z, _] = apart(simd, [a, b, c, d, e, f, g, h]);
-            self.0[block] = [x.into(), y.into(), z.into()];
+        for band in order.bands() {
+            let blocks = &mut self.0[band.blocks()];
+            dispatch!(instructions.level(), simd => load_blocks(simd, blocks, band, &points[band.particles()]));
         }
     }
+}
 
-    /// Hands back one point for each particle.
-    pub fn store(&self, order: Order, points: &mut [Vec3A], instructions: Instructions) {
-        dispatch!(instructions.level(), simd => self.store_blocks(simd, order, points));
+#[inline(always)]
+fn load_blocks<S: Simd>(simd: S, blocks: &mut [Block], band: Band, points: &[Vec3A]) {
+    for (some, block) in band.particles_of_blocks().zip(blocks) {
+        let points = &points[some];
+        let mut rows = [[0.0; 4]; LANES];
+        for (row, &point) in rows.iter_mut().zip(points) {
+            *row = Vec4::from((point, 0.0)).to_array();
+        }
+        let [a, b, c, d, e, f, g, h] = &rows;
+        let [x, y, z, _] = apart(simd, [a, b, c, d, e, f, g, h]);
+        *block = [x.into(), y.into(), z.into()];
     }
+}
 
-    #[inline(always)]
-    fn store_blocks<S: Simd>(&self, simd: S, order: Order, points: &mut [Vec3A]) {
-        for (block, first, count) in order.near_blocks() {
-            let [x, y, z] = &self.0[block];
-            let (x, y, z) = (lane(simd, x), lane(simd, y), lane(simd, z));
-            let rows = together([x, y, z, z]);
-            for (point, row) in points[first..first + count].iter_mut().zip(rows) {
-                *point = Vec3A::from_vec4(Vec4::from_array(row));
-            }
+#[inline(always)]
+fn store_blocks<S: Simd>(simd: S, blocks: &[Block], band: Band, points: &mut [Vec3A]) {
+    for (some, [x, y, z]) in band.particles_of_blocks().zip(blocks) {
+        let (x, y, z) = (lane(simd, x), lane(simd, y), lane(simd, z));
+        let rows = together([x, y, z, z]);
+        for (point, row) in points[some].iter_mut().zip(rows) {
+            *point = Vec3A::from_vec4(Vec4::from_array(row));
         }
     }
 }
@@ -200,30 +227,30 @@ pub struct Lanes {
 }
 
 impl Lanes {
+    /// Makes room for particles in an order.
+    pub fn fit(&mut self, order: Order) {
+        self.order = order;
+        for points in [&mut self.position, &mut self.previous, &mut self.velocity] {
+            points.resize(order.block_count());
+        }
+        self.inverse_mass.resize(order.block_count(), Lane::default());
+    }
+
     /// Takes over the state of a cloth.
     pub fn load(&mut self, particles: &Particles, order: Order, instructions: Instructions) {
-        self.order = order;
-        self.previous.resize(order.block_count());
-        self.position.load(order, &particles.position, instructions);
-        self.velocity.load(order, &particles.velocity, instructions);
-        self.inverse_mass.resize(order.block_count(), Lane::default());
-        for (block, first, count) in order.near_blocks() {
-            let lane = &mut self.inverse_mass[block];
-            let masses = &particles.inverse_mass[first..first + count];
-            match masses.as_array() {
-                Some(masses) => *lane = *masses,
-                None => {
-                    *lane = Lane::default();
-                    lane[..count].copy_from_slice(masses);
-                }
-            }
+        self.fit(order);
+        for band in order.bands() {
+            self.band(band).load(particles, band, instructions);
         }
     }
 
     /// Hands the state back.
-    pub fn store(&self, particles: &mut Particles, instructions: Instructions) {
-        self.position.store(self.order, &mut particles.position, instructions);
-        self.velocity.store(self.order, &mut particles.velocity, instructions);
+    pub fn store(&mut self, particles: &mut Particles, instructions: Instructions) {
+        let Particles { position, velocity, .. } = particles;
+        for band in self.order.bands() {
+            let (position, velocity) = (&mut position[band.particles()], &mut velocity[band.particles()]);
+            self.band(band).store(position, velocity, band, instructions);
+        }
     }
 
     /// Inverse mass of the particle in a slot, 1/kg.
@@ -250,7 +277,35 @@ pub(super) struct Run<'a> {
     /// Velocity, m/s.
     pub velocity: &'a mut [Block],
     /// Inverse mass, 1/kg.
-    pub inverse_mass: &'a [Lane],
+    pub inverse_mass: &'a mut [Lane],
+}
+
+impl Run<'_> {
+    /// Takes over the state of a band.
+    pub fn load(&mut self, particles: &Particles, band: Band, instructions: Instructions) {
+        let level = instructions.level();
+        let (position, velocity) = (&particles.position[band.particles()], &particles.velocity[band.particles()]);
+        dispatch!(level, simd => load_blocks(simd, self.position, band, position));
+        dispatch!(level, simd => load_blocks(simd, self.velocity, band, velocity));
+        let masses = &particles.inverse_mass[band.particles()];
+        for (some, lane) in band.particles_of_blocks().zip(&mut *self.inverse_mass) {
+            let masses = &masses[some];
+            match masses.as_array() {
+                Some(masses) => *lane = *masses,
+                None => {
+                    *lane = Lane::default();
+                    lane[..masses.len()].copy_from_slice(masses);
+                }
+            }
+        }
+    }
+
+    /// Hands the state of a band back, to its own particles.
+    pub fn store(&self, position: &mut [Vec3A], velocity: &mut [Vec3A], band: Band, instructions: Instructions) {
+        let level = instructions.level();
+        dispatch!(level, simd => store_blocks(simd, self.position, band, position));
+        dispatch!(level, simd => store_blocks(simd, self.velocity, band, velocity));
+    }
 }
 
 impl Lanes {
@@ -260,18 +315,34 @@ impl Lanes {
         Run { first: 0, position: &mut position.0, previous: &mut previous.0, velocity: &mut velocity.0, inverse_mass }
     }
 
-    /// All blocks, in parts of `count`.
-    pub(super) fn parts(&mut self, count: usize) -> impl Iterator<Item = Run<'_>> {
-        let Run { position, previous, velocity, inverse_mass, .. } = self.whole();
-        let moving = position.chunks_mut(count).zip(previous.chunks_mut(count)).zip(velocity.chunks_mut(count));
-        let all = (0..).step_by(count).zip(moving).zip(inverse_mass.chunks(count));
-        all.map(|((first, ((position, previous), velocity)), inverse_mass)| Run {
-            first,
-            position,
-            previous,
-            velocity,
-            inverse_mass,
-        })
+    /// The blocks of a band.
+    pub(super) fn band(&mut self, band: Band) -> Run<'_> {
+        let Self { position, previous, velocity, inverse_mass, .. } = self;
+        let blocks = band.blocks();
+        Run {
+            first: blocks.start,
+            position: &mut position.0[blocks.clone()],
+            previous: &mut previous.0[blocks.clone()],
+            velocity: &mut velocity.0[blocks.clone()],
+            inverse_mass: &mut inverse_mass[blocks],
+        }
+    }
+
+    /// All blocks, band after band.
+    pub(super) fn bands(&mut self) -> Vec<Run<'_>> {
+        let bands = self.order.bands();
+        let Run { mut position, mut previous, mut velocity, mut inverse_mass, .. } = self.whole();
+        let cut = |band: Band| {
+            let count = band.blocks().len();
+            Run {
+                first: band.blocks().start,
+                position: position.split_off_mut(..count).unwrap_or_default(),
+                previous: previous.split_off_mut(..count).unwrap_or_default(),
+                velocity: velocity.split_off_mut(..count).unwrap_or_default(),
+                inverse_mass: inverse_mass.split_off_mut(..count).unwrap_or_default(),
+            }
+        };
+        bands.map(cut).collect()
     }
 }
 
@@ -281,7 +352,7 @@ mod tests {
 
     #[test]
     fn what_is_taken_over_comes_back_the_same() {
-        for (rows, columns) in [(1, 1), (1, 8), (1, 41), (3, 7), (5, 17), (9, 16)] {
+        for (rows, columns) in [(1, 1), (1, 8), (1, 41), (3, 7), (5, 17), (9, 16), (130, 9)] {
             let order = Order { rows, columns };
             let count = order.particle_count();
             let points: Vec<Vec3A> = (0..count).map(|i| Vec3A::new(i as f32, 0.5, -(i as f32))).collect();
@@ -293,8 +364,9 @@ mod tests {
             };
             let mut lanes = Lanes::default();
             lanes.load(&particles, order, Instructions::Best);
-            let last = order.slot(count as u32 - 1);
-            assert_eq!(lanes.position.get(last), particles.position[count - 1]);
+            for particle in 0..count {
+                assert_eq!(lanes.position.get(order.slot(particle as u32)), particles.position[particle]);
+            }
             assert_eq!(lanes.inverse_mass.as_flattened().iter().sum::<f32>(), count as f32);
             let (position, velocity) = (vec![Vec3A::ONE; count], vec![Vec3A::ONE; count]);
             let mut back = Particles { position, velocity, ..particles.clone() };

@@ -4,10 +4,16 @@ use bevy::math::Vec3A;
 
 use super::{
     Instructions, Lanes,
-    constraint::{braid::Spool, level::Levels, spring::Beads, tether::PinPlaces, weave::Loom},
+    constraint::{
+        braid::Spool,
+        level::Levels,
+        spring::Beads,
+        tether::PinPlaces,
+        weave::{Loom, Seam},
+    },
     force::wind::Air,
     lanes::Points,
-    share::Shares,
+    share::Bench,
     simd::Lane,
 };
 
@@ -40,6 +46,8 @@ pub struct Scratch {
     pub(super) levels: Levels,
     /// The pins that hold tethers.
     pub(super) pins: PinPlaces,
-    /// Shares of the threads in a large cloth.
-    pub(super) shares: Shares,
+    /// What each thread needs of its own in a large cloth.
+    pub(super) benches: Vec<Bench>,
+    /// Rows between bands.
+    pub(super) seam: Seam,
 }

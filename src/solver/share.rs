@@ -1,38 +1,29 @@
 //! The springs of a large lattice in one substep, shared between threads.
 //!
-//! Columns are shared in parts of two packs each, rows and diagonals in bands of rows. What a thread does in a phase
-//! depends on nothing that others do in it, so the bits are those of one thread. For the diagonals, in which each row of
-//! particles hangs together with the next, a band takes two more rows on either side: it solves the diagonals there as
-//! well, and its own rows get what they would get from the whole.
+//! What is along rows is shared by bands of rows, as they stand together in memory, and what is along columns by pairs of
+//! packs. What a thread does in a phase depends on nothing that others do in it, so the bits are those of one thread.
 
-use core::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use bevy::tasks::TaskPool;
 
 use super::{
-    Lanes,
+    Instructions, Lanes, Particles,
     constraint::{
+        level::{LevelRun, Levels},
         spring::Scaled,
         strand::Both,
         tether::{self, PinPlaces, TetherBlock},
-        weave::{self, Last, Loom, ROWS, Sheet, Weave},
+        weave::{self, Last, Loom, Seam, Sheet, Weave},
     },
     crew::{self, Phase},
     integrate::{self, Finish},
-    lanes::{Block, Run},
-    lattice::Lattice,
+    lanes::{Band, Order, Run},
     simd::Lane,
 };
 
 /// Particles from which on it pays: below, waking another thread takes as long as the work.
 pub(super) const LARGE: usize = 10_000;
-
-/// Rows of a band, a multiple of four: the order of its diagonals goes by four rows.
-const BAND: usize = 32;
-
-/// Rows on either side of a band that its diagonals depend on.
-const HALO: usize = 2;
 
 /// What the threads need to know of a substep.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +32,8 @@ pub(super) struct Work<'a> {
     pub shear: Scaled,
     pub last: Last,
     pub row_masses: &'a [Lane],
+    /// Levels that are solved already, if there are any.
+    pub levels: Option<(&'a LevelRun<'a>, &'a Levels)>,
     pub tethers: &'a [TetherBlock],
     pub pins: &'a PinPlaces,
     pub slack: f32,
@@ -48,154 +41,148 @@ pub(super) struct Work<'a> {
     pub finish: Option<Finish<'a>>,
 }
 
-/// Buffers of all threads.
+/// Buffers of one thread.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shares {
-    bands: Vec<Band>,
-    looms: Vec<Loom>,
+pub(super) struct Bench {
+    loom: Loom,
+    seam: Seam,
 }
 
-/// Some rows of the cloth, and those around them.
-#[derive(Clone, Debug, Default)]
-struct Band {
-    /// All of them.
-    rows: Range<usize>,
-    /// Those that are the band's own.
-    own: Range<usize>,
-    position: Vec<Block>,
-    previous: Vec<Block>,
-    inverse_mass: Vec<Lane>,
+/// Moves the cloth along with its levels, solves tethers and springs, and finishes the substep.
+pub(super) fn solve(pool: &TaskPool, lanes: &mut Lanes, benches: &mut Vec<Bench>, work: &Work) {
+    benches.resize_with(benches.len().max(crew::size(pool)), Bench::default);
+    let order = lanes.order;
+    let cloth = Cloth {
+        work,
+        bands: order.bands().collect(),
+        runs: lanes.bands().into_iter().map(Mutex::new).collect(),
+        benches: benches.iter_mut().map(Mutex::new).collect(),
+    };
+    let begin = |band, _| cloth.begin(band);
+    let cross = |band, worker| cloth.cross(band, worker);
+    let columns = |pair, worker| cloth.solve_columns(pair, worker);
+    let rows = |band, worker| cloth.solve_rows(band, worker);
+    let end = |band, _| cloth.finish(band);
+    let bands = cloth.bands.len();
+    let [first, second] = work.last.order().map(|threads| match threads {
+        Last::Columns => Phase { units: order.pack_count().div_ceil(2), work: &columns },
+        Last::Rows => Phase { units: bands, work: &rows },
+    });
+    let [begin, cross, end] = [
+        Phase { units: bands, work: &begin },
+        Phase { units: bands, work: &cross },
+        Phase { units: bands, work: &end },
+    ];
+    crew::run(pool, &[begin, cross, first, second, end]);
 }
 
-impl Shares {
-    /// Makes room, and gives the bands their masses, once a step.
-    pub fn fit(&mut self, lattice: &Lattice, inverse_mass: &[Lane]) {
-        self.bands.resize_with(lattice.rows.div_ceil(BAND), Band::default);
-        for (band, first) in self.bands.iter_mut().zip((0..).step_by(BAND)) {
-            band.own = first..lattice.rows.min(first + BAND);
-            band.rows = first.saturating_sub(HALO)..lattice.rows.min(first + BAND + HALO);
-            let count = band.rows.len() * lattice.order().pack_count();
-            band.position.resize(count, Block::default());
-            band.previous.resize(count, Block::default());
-            band.inverse_mass.clear();
-            for column in inverse_mass.chunks_exact(lattice.rows) {
-                band.inverse_mass.extend_from_slice(&column[band.rows.clone()]);
-            }
-        }
-    }
-
-    /// Solves tethers, diagonals, columns and rows, and finishes the substep.
-    pub fn solve(&mut self, pool: &TaskPool, lanes: &mut Lanes, work: &Work) {
-        self.looms.resize_with(self.looms.len().max(crew::size(pool)), Loom::default);
-        let Work { weave, last, finish, .. } = work;
-        let rows = weave.lattice.rows;
-        let cloth = Cloth {
-            work,
-            parts: lanes.parts(2 * rows).map(Mutex::new).collect(),
-            bands: self.bands.iter_mut().map(Mutex::new).collect(),
-            looms: self.looms.iter_mut().map(Mutex::new).collect(),
-        };
-        let tether = |part, _| cloth.tether(part);
-        let cross = |band, _| cloth.solve_diagonals(band);
-        let columns = |part, worker| cloth.solve_columns(part, worker);
-        let rows = |band, worker| cloth.solve_rows(band, worker);
-        let end = |part, _| cloth.finish(part);
-        let (parts, packs) = (cloth.parts.len(), weave.lattice.rows.div_ceil(ROWS));
-        let [first, second] = last.order().map(|threads| match threads {
-            Last::Columns => Phase { units: parts, work: &columns },
-            Last::Rows => Phase { units: packs, work: &rows },
-        });
-        let [tether, cross] = [Phase { units: parts, work: &tether }, Phase { units: cloth.bands.len(), work: &cross }];
-        let end = Phase { units: if finish.is_some() { parts } else { 0 }, work: &end };
-        crew::run(pool, &[tether, cross, first, second, end]);
-    }
+/// Takes over the state of a cloth.
+pub(super) fn load(
+    pool: &TaskPool,
+    lanes: &mut Lanes,
+    particles: &Particles,
+    order: Order,
+    instructions: Instructions,
+) {
+    lanes.fit(order);
+    let runs: Vec<_> = order.bands().zip(lanes.bands()).map(Mutex::new).collect();
+    let load = |number: usize, _| {
+        let (band, run) = &mut *lock(&runs[number]);
+        run.load(particles, *band, instructions);
+    };
+    crew::run(pool, &[Phase { units: runs.len(), work: &load }]);
 }
 
-/// A cloth while threads work on it. Nobody holds more than one part and one band at a time.
+/// Hands the state back.
+pub(super) fn store(pool: &TaskPool, lanes: &mut Lanes, particles: &mut Particles, instructions: Instructions) {
+    let Particles { position, velocity, .. } = particles;
+    let (mut position, mut velocity) = (&mut position[..], &mut velocity[..]);
+    let order = lanes.order;
+    let cut = |(band, run): (Band, _)| {
+        let count = band.particles().len();
+        let position = position.split_off_mut(..count).unwrap_or_default();
+        let velocity = velocity.split_off_mut(..count).unwrap_or_default();
+        Mutex::new((band, run, position, velocity))
+    };
+    let runs: Vec<_> = order.bands().zip(lanes.bands()).map(cut).collect();
+    let store = |number: usize, _| {
+        let (band, run, position, velocity) = &mut *lock(&runs[number]);
+        run.store(position, velocity, *band, instructions);
+    };
+    crew::run(pool, &[Phase { units: runs.len(), work: &store }]);
+}
+
+/// A cloth while threads work on it. Nobody holds more than one band at a time.
 struct Cloth<'a> {
     work: &'a Work<'a>,
-    /// Two packs of columns each.
-    parts: Vec<Mutex<Run<'a>>>,
-    bands: Vec<Mutex<&'a mut Band>>,
+    bands: Vec<Band>,
+    /// What is in the bands.
+    runs: Vec<Mutex<Run<'a>>>,
     /// One for each worker.
-    looms: Vec<Mutex<&'a mut Loom>>,
+    benches: Vec<Mutex<&'a mut Bench>>,
 }
 
 impl Cloth<'_> {
-    /// Pulls particles back to their tethers, and hands the rows to the bands.
-    fn tether(&self, part: usize) {
-        let Work { weave, tethers, pins, slack, .. } = *self.work;
-        let mut run = lock(&self.parts[part]);
-        let Run { first, position, inverse_mass, .. } = &mut *run;
-        tether::solve(position, inverse_mass, *first, tethers, pins, slack, weave.instructions);
-        let rows = weave.lattice.rows;
-        for band in &self.bands {
-            let mut band = lock(band);
-            band.take(2 * part, rows, run.position, |band| &mut band.position);
-            if self.work.shear.c > 0.0 {
-                band.take(2 * part, rows, run.previous, |band| &mut band.previous);
-            }
+    /// Levels, tethers, and the diagonals below even rows.
+    fn begin(&self, number: usize) {
+        let Work { weave: Weave { lattice, instructions, .. }, shear, levels, tethers, pins, slack, .. } = *self.work;
+        let (band, mut run) = (self.bands[number], lock(&self.runs[number]));
+        let Run { first, position, previous, inverse_mass, .. } = &mut *run;
+        if let Some((run, levels)) = levels {
+            levels.move_band(run, position, inverse_mass, band);
         }
-    }
-
-    /// Solves the diagonals of a band, and hands its rows back.
-    fn solve_diagonals(&self, band: usize) {
-        let Work { weave: Weave { lattice, instructions, .. }, shear, .. } = *self.work;
-        let mut band = lock(&self.bands[band]);
-        let Band { rows, own, position, previous, inverse_mass } = &mut **band;
+        tether::solve(position, inverse_mass, *first, tethers, pins, slack, instructions);
         let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
-        weave::solve_diagonals(&mut sheet, rows.start, lattice, shear, instructions);
-        let local = own.start - rows.start..own.end - rows.start;
-        let mut solved = position.chunks_exact(rows.len());
-        for part in &self.parts {
-            let mut run = lock(part);
-            for (column, solved) in run.position.chunks_exact_mut(lattice.rows).zip(&mut solved) {
-                column[own.clone()].copy_from_slice(&solved[local.clone()]);
-            }
+        weave::solve_band_diagonals(&mut sheet, band, 0, lattice, shear, instructions);
+    }
+
+    /// The diagonals below odd rows, and those to the band above: they have no particle in common.
+    fn cross(&self, number: usize, worker: usize) {
+        let Work { weave: Weave { lattice, instructions, .. }, shear, .. } = *self.work;
+        let band = self.bands[number];
+        {
+            let mut run = lock(&self.runs[number]);
+            let Run { position, previous, inverse_mass, .. } = &mut *run;
+            let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
+            weave::solve_band_diagonals(&mut sheet, band, 1, lattice, shear, instructions);
+        }
+        let Some(above) = number.checked_sub(1) else { return };
+        let seam = &mut lock(&self.benches[worker]).seam;
+        for (row, band) in [above, number].into_iter().enumerate() {
+            let run = lock(&self.runs[band]);
+            seam.take(run.position, run.previous, run.inverse_mass, self.bands[band], row);
+        }
+        seam.solve(band, lattice, shear, instructions);
+        for (row, band) in [above, number].into_iter().enumerate() {
+            seam.put(lock(&self.runs[band]).position, self.bands[band], row);
         }
     }
 
-    fn solve_columns(&self, part: usize, worker: usize) {
-        let mut run = lock(&self.parts[part]);
-        let Run { position, previous, inverse_mass, .. } = &mut *run;
-        self.work.weave.solve_columns::<Both>(
-            position,
-            previous,
-            inverse_mass,
-            2 * part,
-            &mut lock(&self.looms[worker]),
-        );
+    /// Two packs of columns.
+    fn solve_columns(&self, pair: usize, worker: usize) {
+        let (weave, first) = (&self.work.weave, 2 * pair);
+        let loom = &mut lock(&self.benches[worker]).loom;
+        for (&band, run) in self.bands.iter().zip(&self.runs) {
+            let run = lock(run);
+            weave.take_columns(run.position, run.previous, run.inverse_mass, band, first, loom);
+        }
+        weave.solve_taken_columns::<Both>(first, loom);
+        for (&band, run) in self.bands.iter().zip(&self.runs) {
+            weave.put_columns(loom, lock(run).position, band, first);
+        }
     }
 
-    /// Solves as many rows as fit on a loom.
     fn solve_rows(&self, number: usize, worker: usize) {
         let Work { weave, row_masses, .. } = self.work;
-        let mut loom = lock(&self.looms[worker]);
-        let first = number * ROWS;
-        for (part, run) in self.parts.iter().enumerate() {
-            let run = lock(run);
-            weave.take_rows(run.position, run.previous, 2 * part, first, &mut loom);
-        }
-        weave.solve_rows::<Both>(row_masses, first, &mut loom);
-        for (part, run) in self.parts.iter().enumerate() {
-            weave.put_rows(&loom, lock(run).position, 2 * part, first);
-        }
+        let loom = &mut lock(&self.benches[worker]).loom;
+        let mut run = lock(&self.runs[number]);
+        let Run { position, previous, .. } = &mut *run;
+        weave.solve_rows::<Both>(position, previous, row_masses, self.bands[number], loom);
     }
 
-    fn finish(&self, part: usize) {
+    fn finish(&self, number: usize) {
         if let Some(finish) = self.work.finish {
-            integrate::finish(&mut lock(&self.parts[part]), finish, self.work.weave.instructions);
-        }
-    }
-}
-
-impl Band {
-    /// Takes over the band's rows of the packs from that with the number `first_pack` on.
-    fn take(&mut self, first_pack: usize, rows: usize, from: &[Block], to: impl Fn(&mut Self) -> &mut Vec<Block>) {
-        let some = self.rows.clone();
-        let taken = to(self).chunks_exact_mut(some.len()).skip(first_pack);
-        for (taken, column) in taken.zip(from.chunks_exact(rows)) {
-            taken.copy_from_slice(&column[some.clone()]);
+            integrate::finish(&mut lock(&self.runs[number]), finish, self.work.weave.instructions);
         }
     }
 }

@@ -20,7 +20,7 @@ use super::{
     contact, explicit,
     force::wind,
     integrate::{self, Finish, Motion, SpeedLimit},
-    lanes::Points,
+    lanes::{Points, Run},
     share::{self, Work},
     topology::SpringKind,
 };
@@ -46,7 +46,11 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         return StepReport { substeps: 0, needed_substeps: 0, stiffness_scale: 1.0, contacts: 0, steady_force: 0.0 };
     }
     let instructions = scratch.instructions;
-    scratch.lanes.load(particles, topology.order(), instructions);
+    let helpers = helpers(topology, ctx);
+    match helpers {
+        Some((pool, _)) => share::load(pool, &mut scratch.lanes, particles, topology.order(), instructions),
+        None => scratch.lanes.load(particles, topology.order(), instructions),
+    }
     grab::take_up(&mut scratch.lanes, ctx.grabs);
     let is_near = contact::is_any_near(particles, ctx, dt);
     let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
@@ -67,7 +71,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
     let limit = SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most };
     let h = dt / substeps as f32;
-    let substep = Substep { topology, ctx, h, stiffness_scale, is_pushed, is_near, limit, last, levels };
+    let substep = Substep { topology, ctx, h, stiffness_scale, is_pushed, is_near, limit, helpers, last, levels };
     let air_interval = ((1.0 / (AIR_RATE * substep.h)) as u32).max(1);
     let mut contacts = 0;
 
@@ -116,9 +120,19 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
             integrate::finish(&mut lanes.whole(), substep.finish(applied_force, has_moved), instructions);
         }
     }
-    scratch.lanes.store(particles, instructions);
+    match helpers {
+        Some((pool, _)) => share::store(pool, &mut scratch.lanes, particles, instructions),
+        None => scratch.lanes.store(particles, instructions),
+    }
     let steady_force = if is_pushed { scratch.steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
     StepReport { substeps, needed_substeps, stiffness_scale, contacts, steady_force }
+}
+
+/// The threads that share the work, where it pays and all springs are on the lattice.
+fn helpers<'a>(topology: &'a Topology, ctx: &StepContext<'a>) -> Option<(&'a TaskPool, &'a Lattice)> {
+    let is_woven = ctx.method == Method::Strands && topology.batches.iter().all(|batch| batch.woven);
+    let is_large = topology.particle_count() >= share::LARGE;
+    ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_woven)
 }
 
 /// What all substeps of a step have in common.
@@ -135,6 +149,8 @@ struct Substep<'a> {
     /// Whether anything is so near that it may be touched.
     is_near: bool,
     limit: SpeedLimit,
+    /// The threads that share the work, and the lattice that all springs are on.
+    helpers: Option<(&'a TaskPool, &'a Lattice)>,
     last: Last,
     levels: &'a [LevelPass],
 }
@@ -143,11 +159,8 @@ impl Substep<'_> {
     /// Works out what doesn't change from substep to substep.
     fn prepare(&self, scratch: &mut Scratch) {
         if let (Method::Strands, Some(lattice)) = (self.ctx.method, &self.topology.lattice) {
-            let Scratch { lanes, row_masses, shares, instructions, .. } = scratch;
+            let Scratch { lanes, row_masses, instructions, .. } = scratch;
             weave::masses_along_rows(lattice, &lanes.inverse_mass, row_masses, *instructions);
-            if self.helpers().is_some() {
-                shares.fit(lattice, &lanes.inverse_mass);
-            }
         }
         if let Some(run) = self.levels(scratch) {
             scratch.levels.fit(&run, &scratch.lanes);
@@ -198,15 +211,16 @@ impl Substep<'_> {
     /// Coarse levels, tethers, and then the springs: threads as strands, the last and best held. Of a large cloth threads
     /// also finish the substep: true where they did.
     fn solve_strands(&self, scratch: &mut Scratch, goes_on: bool) -> bool {
-        if let Some(run) = self.levels(scratch) {
+        let run = self.levels(scratch);
+        if let Some(run) = &run {
             let Scratch { lanes, loom, pins, levels, .. } = scratch;
-            levels.solve(&run, lanes, pins, loom);
+            levels.solve(run, lanes, pins, loom);
         }
         let scaled = |kind| Scaled::new(self.ctx.material.spring(kind), self.h);
         let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
         let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
-        if let Some((pool, lattice)) = self.helpers() {
-            let Scratch { lanes, row_masses, pins, shares, applied_force, instructions, .. } = scratch;
+        if let Some((pool, lattice)) = self.helpers {
+            let Scratch { lanes, row_masses, pins, levels, benches, applied_force, instructions, .. } = scratch;
             grab::solve_tethers(lanes, self.ctx.grabs, self.ctx.tether_slack);
             let finish = (!self.is_near).then(|| self.finish(applied_force, goes_on));
             let work = Work {
@@ -214,16 +228,23 @@ impl Substep<'_> {
                 shear: scaled(SpringKind::Shear),
                 last: self.last,
                 row_masses,
+                levels: run.as_ref().map(|run| (run, &*levels)),
                 tethers: self.ctx.tethers.map_or(&[], Tethers::of_cloth),
                 pins,
                 slack: self.ctx.tether_slack,
                 finish,
             };
-            shares.solve(pool, lanes, &work);
+            share::solve(pool, lanes, benches, &work);
             return finish.is_some();
         }
+        if let Some(run) = &run {
+            for band in scratch.lanes.order.bands() {
+                let Run { position, inverse_mass, .. } = scratch.lanes.band(band);
+                scratch.levels.move_band(run, position, inverse_mass, band);
+            }
+        }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, loom, spool, row_masses, instructions, .. } = scratch;
+        let Scratch { lanes, beads, loom, spool, seam, row_masses, instructions, .. } = scratch;
         let (material, h) = (&self.ctx.material, self.h);
         let loose = self.topology.batches.iter().filter(|batch| !batch.woven);
         let braids = &self.topology.braids;
@@ -236,17 +257,10 @@ impl Substep<'_> {
                 inverse_mass: &lanes.inverse_mass,
                 row_masses,
             };
-            weave::solve_diagonals(&mut sheet, 0, lattice, scaled(SpringKind::Shear), *instructions);
+            weave::solve_diagonals(&mut sheet, lattice, scaled(SpringKind::Shear), seam, *instructions);
             Weave { lattice, yarn, instructions: *instructions }.solve::<Both>(&mut sheet, self.last, loom);
         }
         false
-    }
-
-    /// The threads that share the work, where it pays and all springs are on the lattice.
-    fn helpers(&self) -> Option<(&TaskPool, &Lattice)> {
-        let is_woven = self.topology.batches.iter().all(|batch| batch.woven);
-        let is_large = self.topology.particle_count() >= share::LARGE;
-        self.ctx.pool.zip(self.topology.lattice.as_ref()).filter(|_| is_large && is_woven)
     }
 
     /// All springs, colour after colour.

@@ -26,7 +26,7 @@ use super::{
 };
 use crate::solver::{
     Lanes, Level, LevelPass, Tethers,
-    lanes::{Block, Order, Points},
+    lanes::{Band, Block, Order, Points},
     level::{Between, Spread, Transfer},
     simd::{Instructions, LANES, Lane, Vec3x8, lane},
 };
@@ -88,15 +88,20 @@ impl Levels {
         }
     }
 
-    /// Moves all particles of the cloth along with the levels, once a substep.
+    /// Solves all levels, once a substep. Particles of a lattice are moved along with them by [`move_band`](Self::move_band),
+    /// others at once.
     pub fn solve(&mut self, run: &LevelRun, lanes: &mut Lanes, pins: &PinPlaces, loom: &mut Loom) {
-        let (Self { nodes, across }, set) = (self, run.instructions.level());
+        let Self { nodes, across } = self;
         let mut coarser: Option<&Nodes> = None;
         for ((i, level), nodes) in run.used().zip(&run.levels[run.used()]).zip(&mut nodes[run.used()]) {
             nodes.restrict(level, lanes);
             if let (Some(coarser), Some(spread)) = (coarser, &level.from_coarser) {
-                let Nodes { position, inverse_mass, .. } = nodes;
-                dispatch!(set, simd => coarser.prolong(simd, spread, &mut position.0, inverse_mass, across));
+                coarser.spread_across(spread, across, run.instructions);
+                let Nodes { order, position, inverse_mass, .. } = nodes;
+                for band in order.bands() {
+                    let (position, inverse_mass) = (&mut position.0[band.blocks()], &inverse_mass[band.blocks()]);
+                    coarser.spread_down(position, inverse_mass, spread, across, band, run.instructions);
+                }
             }
             let tethers = run.tethers.of_level(i);
             for _ in 0..run.iterations(level) {
@@ -106,16 +111,24 @@ impl Levels {
             coarser = Some(nodes);
         }
         let finest = run.levels[run.used()].last().map(|level| &level.transfer);
-        if let (Some(nodes), Some(transfer)) = (coarser, finest) {
-            let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
-            match transfer {
-                Transfer::Lattice { spread, .. } => {
-                    dispatch!(set, simd => nodes.prolong(simd, spread, position, inverse_mass, across));
-                }
-                Transfer::Chart { particles, .. } => {
-                    dispatch!(set, simd => nodes.prolong_chart(simd, particles, position, inverse_mass));
-                }
+        match (coarser, finest) {
+            (Some(nodes), Some(Transfer::Lattice { spread, .. })) => {
+                nodes.spread_across(spread, across, run.instructions);
             }
+            (Some(nodes), Some(Transfer::Chart { particles, .. })) => {
+                let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
+                let set = run.instructions.level();
+                dispatch!(set, simd => nodes.prolong_chart(simd, particles, position, inverse_mass));
+            }
+            _ => {}
+        }
+    }
+
+    /// Moves a band of a lattice along with the finest level.
+    pub fn move_band(&self, run: &LevelRun, position: &mut [Block], inverse_mass: &[Lane], band: Band) {
+        let Some(finest) = run.used().last() else { return };
+        if let Transfer::Lattice { spread, .. } = &run.levels[finest].transfer {
+            self.nodes[finest].spread_down(position, inverse_mass, spread, &self.across, band, run.instructions);
         }
     }
 }
@@ -187,19 +200,15 @@ impl Nodes {
         }
     }
 
-    /// Moves everything free along with the nodes that it lies between.
+    /// Works out how far rows of nodes take finer columns.
+    fn spread_across(&self, spread: &Spread, across: &mut Points, instructions: Instructions) {
+        across.resize(spread.columns.len() * self.order.rows);
+        dispatch!(instructions.level(), simd => self.spread_eights_across(simd, spread, across));
+    }
+
     #[inline(always)]
-    fn prolong<S: Simd>(
-        &self,
-        simd: S,
-        spread: &Spread,
-        position: &mut [Block],
-        inverse_mass: &[Lane],
-        across: &mut Points,
-    ) {
-        let node_rows = self.order.rows;
-        across.resize(spread.columns.len() * node_rows);
-        for (nodes, across) in spread.columns.iter().zip(across.0.chunks_exact_mut(node_rows)) {
+    fn spread_eights_across<S: Simd>(&self, simd: S, spread: &Spread, across: &mut Points) {
+        for (nodes, across) in spread.columns.iter().zip(across.0.chunks_exact_mut(self.order.rows)) {
             for (row, across) in across.iter_mut().enumerate() {
                 let mut way = Vec3x8::splat(simd, [0.0; 3]);
                 for (column, shares) in nodes {
@@ -209,15 +218,22 @@ impl Nodes {
                 way.store(across);
             }
         }
-        let rows = spread.rows.len();
-        let places = position.chunks_exact_mut(rows).zip(inverse_mass.chunks_exact(rows));
-        for ((places, masses), across) in places.zip(across.0.chunks_exact(node_rows)) {
-            for ((place, w), &Between { first, share }) in places.iter_mut().zip(masses).zip(&spread.rows) {
-                let above = Vec3x8::load(simd, &across[first as usize]);
-                let below = Vec3x8::load(simd, &across[first as usize + 1]);
-                move_free(simd, place, w, above + (below - above) * f32x8::splat(simd, share));
-            }
-        }
+    }
+
+    /// Moves what is free in a finer band along with the rows of nodes that it lies between.
+    fn spread_down(
+        &self,
+        position: &mut [Block],
+        inverse_mass: &[Lane],
+        spread: &Spread,
+        across: &Points,
+        band: Band,
+        instructions: Instructions,
+    ) {
+        let (rows, node_rows) = (&spread.rows[band.first..][..band.rows], self.order.rows);
+        dispatch!(instructions.level(), simd => {
+            spread_eights_down(simd, position, inverse_mass, rows, &across.0, node_rows);
+        });
     }
 
     #[inline(always)]
@@ -239,6 +255,26 @@ impl Nodes {
                 (way[0][lane], way[1][lane], way[2][lane]) = sum.into();
             }
             move_free(simd, place, w, Vec3x8::load(simd, &way));
+        }
+    }
+}
+
+/// Moves particles in some `rows` along with what rows of nodes do `across`.
+#[inline(always)]
+fn spread_eights_down<S: Simd>(
+    simd: S,
+    position: &mut [Block],
+    inverse_mass: &[Lane],
+    rows: &[Between],
+    across: &[Block],
+    node_rows: usize,
+) {
+    let places = position.chunks_exact_mut(rows.len()).zip(inverse_mass.chunks_exact(rows.len()));
+    for ((places, masses), across) in places.zip(across.chunks_exact(node_rows)) {
+        for ((place, w), &Between { first, share }) in places.iter_mut().zip(masses).zip(rows) {
+            let above = Vec3x8::load(simd, &across[first as usize]);
+            let below = Vec3x8::load(simd, &across[first as usize + 1]);
+            move_free(simd, place, w, above + (below - above) * f32x8::splat(simd, share));
         }
     }
 }

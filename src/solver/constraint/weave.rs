@@ -13,7 +13,7 @@ use super::{
 };
 use crate::solver::{
     Anchor, Lattice,
-    lanes::{Block, Order},
+    lanes::{Band, Block, Order},
     lattice::Threads,
     simd::{Instructions, LANES, Lane, Vec3x8, Wide, lane, transpose},
 };
@@ -28,15 +28,13 @@ pub(in crate::solver) struct Sheet<'a> {
     pub row_masses: &'a [Lane],
 }
 
-/// Rows that are solved side by side: two packs.
-pub(in crate::solver) const ROWS: usize = 2 * LANES;
-
 /// Buffers for threads that are being solved.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Loom {
     rows: Rows,
     position: Vec<Block>,
     previous: Vec<Block>,
+    inverse_mass: Vec<Lane>,
 }
 
 impl Loom {
@@ -46,6 +44,7 @@ impl Loom {
         for blocks in [&mut self.position, &mut self.previous] {
             blocks.resize(blocks.len().max(count), Block::default());
         }
+        self.inverse_mass.resize(self.inverse_mass.len().max(count), Lane::default());
     }
 }
 
@@ -74,14 +73,17 @@ pub(in crate::solver) fn masses_along_rows(
 ) {
     let nodes = lattice.along_rows.nodes;
     along_rows.resize(nodes * lattice.rows.div_ceil(LANES), Lane::default());
-    dispatch!(instructions.level(), simd => {
-        for (pack, first) in along_rows.chunks_exact_mut(nodes).zip((0..).step_by(LANES)) {
-            let some = first..lattice.rows.min(first + LANES);
-            for (nodes, column) in pack.chunks_exact_mut(LANES).zip(inverse_mass.chunks_exact(lattice.rows)) {
-                across(simd, column[some.clone()].iter(), nodes.iter_mut());
+    for band in lattice.order().bands() {
+        let packs = along_rows[band.first / LANES * nodes..].chunks_exact_mut(nodes);
+        let columns = inverse_mass[band.blocks()].chunks_exact(band.rows);
+        dispatch!(instructions.level(), simd => {
+            for (pack, some) in packs.zip(packs_of_rows(0..band.rows)) {
+                for (nodes, column) in pack.chunks_exact_mut(LANES).zip(columns.clone()) {
+                    across(simd, column[some.clone()].iter(), nodes.iter_mut());
+                }
             }
-        }
-    });
+        });
+    }
 }
 
 /// Which threads are solved last: they are held best.
@@ -128,64 +130,113 @@ impl Weave<'_> {
     pub fn solve<D: Side>(&self, sheet: &mut Sheet, last: Last, loom: &mut Loom) {
         for threads in last.order() {
             match threads {
-                Last::Columns => {
-                    self.solve_columns::<D>(sheet.position, sheet.previous, sheet.inverse_mass, 0, loom);
-                }
+                Last::Columns => self.solve_columns::<D>(sheet, loom),
                 Last::Rows => {
-                    for first in (0..self.lattice.rows).step_by(ROWS) {
-                        self.take_rows(sheet.position, sheet.previous, 0, first, loom);
-                        self.solve_rows::<D>(sheet.row_masses, first, loom);
-                        self.put_rows(loom, sheet.position, 0, first);
+                    for band in self.lattice.order().bands() {
+                        let (position, previous) = (&mut sheet.position[band.blocks()], &sheet.previous[band.blocks()]);
+                        self.solve_rows::<D>(position, previous, sheet.row_masses, band, loom);
                     }
                 }
             }
         }
     }
 
-    /// Solves the columns of the packs from that with the number `first_pack` on, which are all that is given.
-    pub fn solve_columns<D: Side>(
+    fn solve_columns<D: Side>(&self, sheet: &mut Sheet, loom: &mut Loom) {
+        let (order, threads) = (self.lattice.order(), &self.lattice.along_columns);
+        if order.bands().len() > 1 {
+            for first in (0..order.pack_count()).step_by(2) {
+                for band in order.bands() {
+                    let blocks = band.blocks();
+                    let [position, previous] = [&sheet.position[blocks.clone()], &sheet.previous[blocks.clone()]];
+                    self.take_columns(position, previous, &sheet.inverse_mass[blocks], band, first, loom);
+                }
+                self.solve_taken_columns::<D>(first, loom);
+                for band in order.bands() {
+                    self.put_columns(loom, &mut sheet.position[band.blocks()], band, first);
+                }
+            }
+            return;
+        }
+        // Of one band, columns can be solved where they stand.
+        let stride = order.rows;
+        loom.make_room(2 * stride);
+        let Sheet { position, previous, inverse_mass, .. } = sheet;
+        let pairs = position.chunks_mut(2 * stride).zip(previous.chunks(2 * stride));
+        for (first, ((position, previous), inverse_mass)) in
+            (0..).step_by(2).zip(pairs.zip(inverse_mass.chunks(2 * stride)))
+        {
+            let mut pack = Pack { position, previous, inverse_mass, stride };
+            self.solve_packs::<D>(&mut pack, threads, first, &mut loom.rows);
+        }
+    }
+
+    /// Takes a band's part of up to two packs of columns from the `first` on to the loom.
+    pub fn take_columns(
         &self,
-        position: &mut [Block],
+        position: &[Block],
         previous: &[Block],
         inverse_mass: &[Lane],
-        first_pack: usize,
+        band: Band,
+        first: usize,
         loom: &mut Loom,
     ) {
         let stride = self.lattice.rows;
         loom.make_room(2 * stride);
-        let masses = inverse_mass.chunks(2 * stride);
-        let pairs = position.chunks_mut(2 * stride).zip(previous.chunks(2 * stride)).zip(masses);
-        for (number, ((position, previous), inverse_mass)) in (first_pack..).step_by(2).zip(pairs) {
-            let mut pack = Pack { position, previous, inverse_mass, stride };
-            self.solve_packs::<D>(&mut pack, &self.lattice.along_columns, number, &mut loom.rows);
-        }
-    }
-
-    /// Takes up to sixteen rows from the `first` on to the loom, as far as they are in the packs from that with the number
-    /// `first_pack` on, which are given.
-    pub fn take_rows(&self, position: &[Block], previous: &[Block], first_pack: usize, first: usize, loom: &mut Loom) {
-        loom.make_room(2 * self.lattice.along_rows.nodes);
-        let (level, lattice) = (self.instructions.level(), self.lattice);
-        dispatch!(level, simd => take_rows(simd, position, first_pack, lattice, first, &mut loom.position));
+        let packs = self.packs(first);
+        take(position, band, stride, packs.clone(), &mut loom.position);
+        take(inverse_mass, band, stride, packs.clone(), &mut loom.inverse_mass);
         if self.yarn.is_damped() {
-            dispatch!(level, simd => take_rows(simd, previous, first_pack, lattice, first, &mut loom.previous));
+            take(previous, band, stride, packs, &mut loom.previous);
         }
     }
 
-    /// Solves the rows that were taken. `row_masses` are those of all rows.
-    pub fn solve_rows<D: Side>(&self, row_masses: &[Lane], first: usize, loom: &mut Loom) {
-        let (nodes, number) = (self.lattice.along_rows.nodes, first / LANES);
-        let count = row_packs(self.lattice, first).len() * nodes;
-        let Loom { rows, position, previous } = loom;
-        let inverse_mass = &row_masses[number * nodes..][..count];
-        let mut pack = Pack { position: &mut position[..count], previous, inverse_mass, stride: nodes };
-        self.solve_packs::<D>(&mut pack, &self.lattice.along_rows, number, rows);
+    /// Solves the columns that were taken.
+    pub fn solve_taken_columns<D: Side>(&self, first: usize, loom: &mut Loom) {
+        let stride = self.lattice.rows;
+        let count = self.packs(first).len() * stride;
+        let Loom { rows, position, previous, inverse_mass } = loom;
+        let mut pack = Pack { position: &mut position[..count], previous, inverse_mass, stride };
+        self.solve_packs::<D>(&mut pack, &self.lattice.along_columns, first, rows);
     }
 
-    /// Puts rows back to where they were taken from.
-    pub fn put_rows(&self, loom: &Loom, position: &mut [Block], first_pack: usize, first: usize) {
-        let (level, lattice) = (self.instructions.level(), self.lattice);
-        dispatch!(level, simd => put_rows(simd, &loom.position, position, first_pack, lattice, first));
+    /// Puts a band's part of columns back to where it was taken from.
+    pub fn put_columns(&self, loom: &Loom, position: &mut [Block], band: Band, first: usize) {
+        let taken = loom.position.chunks_exact(self.lattice.rows);
+        for (column, taken) in position.chunks_exact_mut(band.rows).skip(first).zip(taken).take(2) {
+            column.copy_from_slice(&taken[band.first..][..band.rows]);
+        }
+    }
+
+    /// Numbers of up to two packs of columns.
+    fn packs(&self, first: usize) -> Range<usize> {
+        first..self.lattice.order().pack_count().min(first + 2)
+    }
+
+    /// Solves the rows of a band. `row_masses` are those of all rows.
+    pub fn solve_rows<D: Side>(
+        &self,
+        position: &mut [Block],
+        previous: &[Block],
+        row_masses: &[Lane],
+        band: Band,
+        loom: &mut Loom,
+    ) {
+        let (level, threads) = (self.instructions.level(), &self.lattice.along_rows);
+        let nodes = threads.nodes;
+        loom.make_room(2 * nodes);
+        for first in (0..band.rows).step_by(2 * LANES) {
+            let some = first..band.rows.min(first + 2 * LANES);
+            dispatch!(level, simd => take_rows(simd, position, band.rows, some.clone(), nodes, &mut loom.position));
+            if self.yarn.is_damped() {
+                dispatch!(level, simd => take_rows(simd, previous, band.rows, some.clone(), nodes, &mut loom.previous));
+            }
+            let Loom { rows, position: taken, previous, .. } = &mut *loom;
+            let (number, count) = ((band.first + first) / LANES, some.len().div_ceil(LANES) * nodes);
+            let inverse_mass = &row_masses[number * nodes..][..count];
+            let mut pack = Pack { position: &mut taken[..count], previous, inverse_mass, stride: nodes };
+            self.solve_packs::<D>(&mut pack, threads, number, rows);
+            dispatch!(level, simd => put_rows(simd, taken, nodes, position, band.rows, some));
+        }
     }
 
     /// Solves one or two packs of threads, from that with a `number` on.
@@ -208,41 +259,34 @@ impl Weave<'_> {
     }
 }
 
-/// The rows of up to two packs of rows.
-fn row_packs(lattice: &Lattice, first: usize) -> impl ExactSizeIterator<Item = Range<usize>> {
-    let rows = lattice.rows;
-    (first..rows.min(first + ROWS)).step_by(LANES).map(move |row| row..rows.min(row + LANES))
+/// Takes a band's part of some packs of columns to where whole columns stand one after the other.
+fn take<T: Copy>(from: &[T], band: Band, rows: usize, packs: Range<usize>, to: &mut [T]) {
+    let columns = from.chunks_exact(band.rows).skip(packs.start).take(packs.len());
+    for (column, taken) in columns.zip(to.chunks_exact_mut(rows)) {
+        taken[band.first..][..band.rows].copy_from_slice(column);
+    }
 }
 
+/// Rows of each pack that some rows make up.
+fn packs_of_rows(some: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    some.clone().step_by(LANES).map(move |row| row..some.end.min(row + LANES))
+}
+
+/// Takes some rows of a band that has so many, each of `nodes`.
 #[inline(always)]
-fn take_rows<S: Simd>(
-    simd: S,
-    columns: &[Block],
-    first_pack: usize,
-    lattice: &Lattice,
-    first: usize,
-    taken: &mut [Block],
-) {
-    for (some, taken) in row_packs(lattice, first).zip(taken.chunks_exact_mut(lattice.along_rows.nodes)) {
-        let nodes = taken.chunks_exact_mut(LANES).skip(first_pack);
-        for (nodes, column) in nodes.zip(columns.chunks_exact(lattice.rows)) {
+fn take_rows<S: Simd>(simd: S, columns: &[Block], rows: usize, some: Range<usize>, nodes: usize, taken: &mut [Block]) {
+    for (some, taken) in packs_of_rows(some).zip(taken.chunks_exact_mut(nodes)) {
+        for (nodes, column) in taken.chunks_exact_mut(LANES).zip(columns.chunks_exact(rows)) {
             blocks_across(simd, &column[some.clone()], nodes);
         }
     }
 }
 
+/// Puts them back.
 #[inline(always)]
-fn put_rows<S: Simd>(
-    simd: S,
-    taken: &[Block],
-    columns: &mut [Block],
-    first_pack: usize,
-    lattice: &Lattice,
-    first: usize,
-) {
-    for (some, taken) in row_packs(lattice, first).zip(taken.chunks_exact(lattice.along_rows.nodes)) {
-        let nodes = taken.chunks_exact(LANES).skip(first_pack);
-        for (nodes, column) in nodes.zip(columns.chunks_exact_mut(lattice.rows)) {
+fn put_rows<S: Simd>(simd: S, taken: &[Block], nodes: usize, columns: &mut [Block], rows: usize, some: Range<usize>) {
+    for (some, taken) in packs_of_rows(some).zip(taken.chunks_exact(nodes)) {
+        for (nodes, column) in taken.chunks_exact(LANES).zip(columns.chunks_exact_mut(rows)) {
             blocks_across(simd, nodes, &mut column[some.clone()]);
         }
     }
@@ -292,42 +336,122 @@ fn across<'a, S: Simd>(simd: S, from: impl Iterator<Item = &'a Lane>, to: impl I
     }
 }
 
-/// Solves the diagonals of all cells: those between an even row and the next, then those below. The sheet may be a part of
-/// the lattice: all of the columns in its rows from the `first` on, which is even.
+/// Solves the diagonals of all cells: those between an even row and the next, then those below.
 pub(in crate::solver) fn solve_diagonals(
     sheet: &mut Sheet,
-    first: usize,
+    lattice: &Lattice,
+    constants: Scaled,
+    seam: &mut Seam,
+    instructions: Instructions,
+) {
+    let bands = lattice.order().bands();
+    for parity in [0, 1] {
+        for band in bands.clone() {
+            let blocks = band.blocks();
+            let (position, previous) = (&mut sheet.position[blocks.clone()], &sheet.previous[blocks.clone()]);
+            let mut part = Sheet { position, previous, inverse_mass: &sheet.inverse_mass[blocks], row_masses: &[] };
+            solve_band_diagonals(&mut part, band, parity, lattice, constants, instructions);
+        }
+    }
+    for (upper, lower) in bands.clone().zip(bands.skip(1)) {
+        for (band, row) in [(upper, 0), (lower, 1)] {
+            let blocks = band.blocks();
+            let [position, previous] = [&sheet.position[blocks.clone()], &sheet.previous[blocks.clone()]];
+            seam.take(position, previous, &sheet.inverse_mass[blocks], band, row);
+        }
+        seam.solve(lower, lattice, constants, instructions);
+        for (band, row) in [(upper, 0), (lower, 1)] {
+            seam.put(&mut sheet.position[band.blocks()], band, row);
+        }
+    }
+}
+
+/// Solves the diagonals between rows of a band: those below its even rows, or those below the odd ones.
+pub(in crate::solver) fn solve_band_diagonals(
+    sheet: &mut Sheet,
+    band: Band,
+    parity: usize,
     lattice: &Lattice,
     constants: Scaled,
     instructions: Instructions,
 ) {
     let level = instructions.level();
+    let (rows, first) = (band.rows, band.first);
+    let pairs = (parity..rows - 1).step_by(2);
     if constants.c > 0.0 {
-        dispatch!(level, simd => solve_all_diagonals::<_, true>(simd, sheet, first, lattice, constants));
+        dispatch!(level, simd => solve_pairs::<_, true>(simd, sheet, rows, first, pairs, lattice, constants));
     } else if constants.k > 0.0 {
-        dispatch!(level, simd => solve_all_diagonals::<_, false>(simd, sheet, first, lattice, constants));
+        dispatch!(level, simd => solve_pairs::<_, false>(simd, sheet, rows, first, pairs, lattice, constants));
     }
 }
 
+/// The last row of a band and the first of the next, which have diagonals in common.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Seam {
+    position: Vec<Block>,
+    previous: Vec<Block>,
+    inverse_mass: Vec<Lane>,
+}
+
+impl Seam {
+    /// Takes the last row of the band above, which is the seam's row 0, or the first row of the band below, its row 1.
+    pub fn take(&mut self, position: &[Block], previous: &[Block], inverse_mass: &[Lane], band: Band, row: usize) {
+        let packs = position.len() / band.rows;
+        for blocks in [&mut self.position, &mut self.previous] {
+            blocks.resize(2 * packs, Block::default());
+        }
+        self.inverse_mass.resize(2 * packs, Lane::default());
+        for pack in 0..packs {
+            let (from, to) = (Self::block(band, row, pack), 2 * pack + row);
+            self.position[to] = position[from];
+            self.previous[to] = previous[from];
+            self.inverse_mass[to] = inverse_mass[from];
+        }
+    }
+
+    /// Solves the diagonals above the band `below`.
+    pub fn solve(&mut self, below: Band, lattice: &Lattice, constants: Scaled, instructions: Instructions) {
+        let Self { position, previous, inverse_mass } = self;
+        let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
+        let (level, first) = (instructions.level(), below.first - 1);
+        if constants.c > 0.0 {
+            dispatch!(level, simd => solve_pairs::<_, true>(simd, &mut sheet, 2, first, 0..1, lattice, constants));
+        } else if constants.k > 0.0 {
+            dispatch!(level, simd => solve_pairs::<_, false>(simd, &mut sheet, 2, first, 0..1, lattice, constants));
+        }
+    }
+
+    /// Puts a row back.
+    pub fn put(&self, position: &mut [Block], band: Band, row: usize) {
+        for pack in 0..position.len() / band.rows {
+            position[Self::block(band, row, pack)] = self.position[2 * pack + row];
+        }
+    }
+
+    fn block(band: Band, row: usize, pack: usize) -> usize {
+        pack * band.rows + if row == 0 { band.rows - 1 } else { 0 }
+    }
+}
+
+/// Solves the diagonals below some rows of a sheet of so many `rows`, whose `first` is its number in the lattice.
 #[inline(always)]
-fn solve_all_diagonals<S: Simd, const DAMPED: bool>(
+fn solve_pairs<S: Simd, const DAMPED: bool>(
     simd: S,
     sheet: &mut Sheet,
+    rows: usize,
     first: usize,
+    some: impl Iterator<Item = usize>,
     lattice: &Lattice,
     constants: Scaled,
 ) {
-    let rows = sheet.position.len() / lattice.order().pack_count();
-    for parity in [0, 1] {
-        for row in (parity..rows - 1).step_by(2) {
-            let falling = (&lattice.falling, [row, row + 1]);
-            let rising = (&lattice.rising, [row + 1, row]);
-            // By turns, so that what comes first doesn't set the cloth spinning.
-            let pairs = if (first + row) % 4 < 2 { [falling, rising] } else { [rising, falling] };
-            for (rest, ends) in pairs {
-                let rest = rest[first + row..].iter().step_by(lattice.rows);
-                solve_row_pair::<S, DAMPED>(simd, sheet, rest, ends, rows, constants);
-            }
+    for row in some {
+        let falling = (&lattice.falling, [row, row + 1]);
+        let rising = (&lattice.rising, [row + 1, row]);
+        // By turns, so that what comes first doesn't set the cloth spinning.
+        let pairs = if (first + row) % 4 < 2 { [falling, rising] } else { [rising, falling] };
+        for (rest, ends) in pairs {
+            let rest = rest[first + row..].iter().step_by(lattice.rows);
+            solve_row_pair::<S, DAMPED>(simd, sheet, rest, ends, rows, constants);
         }
     }
 }
