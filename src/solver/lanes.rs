@@ -103,6 +103,13 @@ impl Band {
         self.first * packs..(self.first + self.rows) * packs
     }
 
+    /// Places in [`Lanes::row_masses`].
+    pub fn row_masses(self) -> Range<usize> {
+        // What isn't in rows and columns has none.
+        let nodes = if self.order.rows > 1 { self.order.pack_count() * LANES } else { 0 };
+        self.first / LANES * nodes..(self.first + self.rows).div_ceil(LANES) * nodes
+    }
+
     /// The particles.
     pub fn particles(self) -> Range<usize> {
         let columns = self.order.columns;
@@ -224,6 +231,8 @@ pub struct Lanes {
     pub velocity: Points,
     /// Inverse mass, 1/kg. Zero for a fixed particle.
     pub inverse_mass: Vec<Lane>,
+    /// The same for eight rows side by side, column after column: of a lattice.
+    pub row_masses: Vec<Lane>,
 }
 
 impl Lanes {
@@ -234,6 +243,7 @@ impl Lanes {
             points.resize(order.block_count());
         }
         self.inverse_mass.resize(order.block_count(), Lane::default());
+        self.row_masses.resize(order.bands().map(|band| band.row_masses().len()).sum(), Lane::default());
     }
 
     /// Takes over the state of a cloth.
@@ -278,6 +288,8 @@ pub(super) struct Run<'a> {
     pub velocity: &'a mut [Block],
     /// Inverse mass, 1/kg.
     pub inverse_mass: &'a mut [Lane],
+    /// The same for eight rows side by side, column after column: of a lattice.
+    pub row_masses: &'a mut [Lane],
 }
 
 impl Run<'_> {
@@ -311,13 +323,14 @@ impl Run<'_> {
 impl Lanes {
     /// All blocks.
     pub(super) fn whole(&mut self) -> Run<'_> {
-        let Self { position, previous, velocity, inverse_mass, .. } = self;
-        Run { first: 0, position: &mut position.0, previous: &mut previous.0, velocity: &mut velocity.0, inverse_mass }
+        let Self { position, previous, velocity, inverse_mass, row_masses, .. } = self;
+        let (position, previous, velocity) = (&mut position.0, &mut previous.0, &mut velocity.0);
+        Run { first: 0, position, previous, velocity, inverse_mass, row_masses }
     }
 
     /// The blocks of a band.
     pub(super) fn band(&mut self, band: Band) -> Run<'_> {
-        let Self { position, previous, velocity, inverse_mass, .. } = self;
+        let Self { position, previous, velocity, inverse_mass, row_masses, .. } = self;
         let blocks = band.blocks();
         Run {
             first: blocks.start,
@@ -325,13 +338,14 @@ impl Lanes {
             previous: &mut previous.0[blocks.clone()],
             velocity: &mut velocity.0[blocks.clone()],
             inverse_mass: &mut inverse_mass[blocks],
+            row_masses: &mut row_masses[band.row_masses()],
         }
     }
 
     /// All blocks, band after band.
     pub(super) fn bands(&mut self) -> Vec<Run<'_>> {
         let bands = self.order.bands();
-        let Run { mut position, mut previous, mut velocity, mut inverse_mass, .. } = self.whole();
+        let Run { mut position, mut previous, mut velocity, mut inverse_mass, mut row_masses, .. } = self.whole();
         let cut = |band: Band| {
             let count = band.blocks().len();
             Run {
@@ -340,6 +354,7 @@ impl Lanes {
                 previous: previous.split_off_mut(..count).unwrap_or_default(),
                 velocity: velocity.split_off_mut(..count).unwrap_or_default(),
                 inverse_mass: inverse_mass.split_off_mut(..count).unwrap_or_default(),
+                row_masses: row_masses.split_off_mut(..band.row_masses().len()).unwrap_or_default(),
             }
         };
         bands.map(cut).collect()

@@ -1,5 +1,7 @@
 //! The state of a cloth: what a step reads and writes.
 
+use core::ops::Range;
+
 use bevy::math::Vec3A;
 
 use super::{Material, Topology};
@@ -50,11 +52,11 @@ impl Particles {
         }
     }
 
-    /// Whether any external force acts.
-    pub(super) fn is_pushed(&self) -> bool {
+    /// Whether an external force acts on any of some particles.
+    pub(super) fn is_pushed(&self, some: Range<usize>) -> bool {
         // Many at a time: mostly there is none, and all are looked at.
         let sum = |forces: &[Vec3A]| forces.iter().fold(Vec3A::ZERO, |sum, force| sum + force.abs());
-        self.force.chunks(64).any(|forces| sum(forces) != Vec3A::ZERO)
+        self.force[some].chunks(64).any(|forces| sum(forces) != Vec3A::ZERO)
     }
 
     /// Whether every position and velocity is a finite number.

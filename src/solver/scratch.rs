@@ -14,7 +14,6 @@ use super::{
     force::wind::Air,
     lanes::Points,
     share::Bench,
-    simd::Lane,
 };
 
 /// Working memory of [`step`](super::step()). One can serve any number of cloths in turn.
@@ -40,8 +39,6 @@ pub struct Scratch {
     pub(super) loom: Loom,
     /// Threads of braids that are being solved.
     pub(super) spool: Spool,
-    /// Inverse masses for eight rows side by side, 1/kg.
-    pub(super) row_masses: Vec<Lane>,
     /// The coarse levels.
     pub(super) levels: Levels,
     /// The pins that hold tethers.

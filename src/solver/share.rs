@@ -3,6 +3,7 @@
 //! What is along rows is shared by bands of rows, as they stand together in memory, and what is along columns by pairs of
 //! packs. What a thread does in a phase depends on nothing that others do in it, so the bits are those of one thread.
 
+use core::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use bevy::tasks::TaskPool;
@@ -19,7 +20,6 @@ use super::{
     crew::{self, Phase},
     integrate::{self, Finish},
     lanes::{Band, Order, Run},
-    simd::Lane,
 };
 
 /// Particles from which on it pays: below, waking another thread takes as long as the work.
@@ -31,7 +31,6 @@ pub(super) struct Work<'a> {
     pub weave: Weave<'a>,
     pub shear: Scaled,
     pub last: Last,
-    pub row_masses: &'a [Lane],
     /// Levels that are solved already, if there are any.
     pub levels: Option<(&'a LevelRun<'a>, &'a Levels)>,
     pub tethers: &'a [TetherBlock],
@@ -76,21 +75,25 @@ pub(super) fn solve(pool: &TaskPool, lanes: &mut Lanes, benches: &mut Vec<Bench>
     crew::run(pool, &[begin, cross, first, second, end]);
 }
 
-/// Takes over the state of a cloth.
+/// Takes over the state of a cloth, and says whether an external force acts.
 pub(super) fn load(
     pool: &TaskPool,
     lanes: &mut Lanes,
     particles: &Particles,
     order: Order,
     instructions: Instructions,
-) {
+) -> bool {
     lanes.fit(order);
     let runs: Vec<_> = order.bands().zip(lanes.bands()).map(Mutex::new).collect();
+    let is_pushed = AtomicBool::new(false);
     let load = |number: usize, _| {
         let (band, run) = &mut *lock(&runs[number]);
         run.load(particles, *band, instructions);
+        weave::masses_along_rows(run.inverse_mass, *band, run.row_masses, instructions);
+        is_pushed.fetch_or(particles.is_pushed(band.particles()), Ordering::Relaxed);
     };
     crew::run(pool, &[Phase { units: runs.len(), work: &load }]);
+    is_pushed.into_inner()
 }
 
 /// Hands the state back.
@@ -173,10 +176,10 @@ impl Cloth<'_> {
     }
 
     fn solve_rows(&self, number: usize, worker: usize) {
-        let Work { weave, row_masses, .. } = self.work;
+        let weave = &self.work.weave;
         let loom = &mut lock(&self.benches[worker]).loom;
         let mut run = lock(&self.runs[number]);
-        let Run { position, previous, .. } = &mut *run;
+        let Run { position, previous, row_masses, .. } = &mut *run;
         weave.solve_rows::<Both>(position, previous, row_masses, self.bands[number], loom);
     }
 

@@ -47,10 +47,13 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     }
     let instructions = scratch.instructions;
     let helpers = helpers(topology, ctx);
-    match helpers {
+    let is_pushed = match helpers {
         Some((pool, _)) => share::load(pool, &mut scratch.lanes, particles, topology.order(), instructions),
-        None => scratch.lanes.load(particles, topology.order(), instructions),
-    }
+        None => {
+            scratch.lanes.load(particles, topology.order(), instructions);
+            particles.is_pushed(0..particles.len())
+        }
+    };
     grab::take_up(&mut scratch.lanes, ctx.grabs);
     let is_near = contact::is_any_near(particles, ctx, dt);
     let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
@@ -66,7 +69,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         }
     };
     let substeps = needed_substeps.min(most);
-    let is_pushed = wind::feels_air(ctx) || particles.is_pushed();
+    let is_pushed = wind::feels_air(ctx) || is_pushed;
     let last = Last::between(ctx.anchors, topology.order());
     let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
     let limit = SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most };
@@ -158,9 +161,13 @@ struct Substep<'a> {
 impl Substep<'_> {
     /// Works out what doesn't change from substep to substep.
     fn prepare(&self, scratch: &mut Scratch) {
-        if let (Method::Strands, Some(lattice)) = (self.ctx.method, &self.topology.lattice) {
-            let Scratch { lanes, row_masses, instructions, .. } = scratch;
-            weave::masses_along_rows(lattice, &lanes.inverse_mass, row_masses, *instructions);
+        // Threads have done it already; but hands have changed masses since.
+        let are_rows_known = self.helpers.is_some() && self.ctx.grabs.is_empty();
+        if self.ctx.method == Method::Strands && self.topology.lattice.is_some() && !are_rows_known {
+            for band in scratch.lanes.order.bands() {
+                let Run { inverse_mass, row_masses, .. } = scratch.lanes.band(band);
+                weave::masses_along_rows(inverse_mass, band, row_masses, scratch.instructions);
+            }
         }
         if let Some(run) = self.levels(scratch) {
             scratch.levels.fit(&run, &scratch.lanes);
@@ -220,14 +227,13 @@ impl Substep<'_> {
         let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
         let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
         if let Some((pool, lattice)) = self.helpers {
-            let Scratch { lanes, row_masses, pins, levels, benches, applied_force, instructions, .. } = scratch;
+            let Scratch { lanes, pins, levels, benches, applied_force, instructions, .. } = scratch;
             grab::solve_tethers(lanes, self.ctx.grabs, self.ctx.tether_slack);
             let finish = (!self.is_near).then(|| self.finish(applied_force, goes_on));
             let work = Work {
                 weave: Weave { lattice, yarn, instructions: *instructions },
                 shear: scaled(SpringKind::Shear),
                 last: self.last,
-                row_masses,
                 levels: run.as_ref().map(|run| (run, &*levels)),
                 tethers: self.ctx.tethers.map_or(&[], Tethers::of_cloth),
                 pins,
@@ -244,7 +250,7 @@ impl Substep<'_> {
             }
         }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, loom, spool, seam, row_masses, instructions, .. } = scratch;
+        let Scratch { lanes, beads, loom, spool, seam, instructions, .. } = scratch;
         let (material, h) = (&self.ctx.material, self.h);
         let loose = self.topology.batches.iter().filter(|batch| !batch.woven);
         let braids = &self.topology.braids;
@@ -255,7 +261,7 @@ impl Substep<'_> {
                 position: &mut lanes.position.0,
                 previous: &lanes.previous.0,
                 inverse_mass: &lanes.inverse_mass,
-                row_masses,
+                row_masses: &lanes.row_masses,
             };
             weave::solve_diagonals(&mut sheet, lattice, scaled(SpringKind::Shear), seam, *instructions);
             Weave { lattice, yarn, instructions: *instructions }.solve::<Both>(&mut sheet, self.last, loom);

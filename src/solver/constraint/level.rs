@@ -157,7 +157,11 @@ impl Nodes {
                 }
             }
         }
-        weave::masses_along_rows(&level.lattice, &self.inverse_mass, &mut self.row_masses, instructions);
+        self.row_masses.resize(self.order.bands().map(|band| band.row_masses().len()).sum(), Lane::default());
+        for band in self.order.bands() {
+            let inverse_mass = &self.inverse_mass[band.blocks()];
+            weave::masses_along_rows(inverse_mass, band, &mut self.row_masses[band.row_masses()], instructions);
+        }
     }
 
     /// Puts the nodes where the cloth is.

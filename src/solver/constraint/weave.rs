@@ -64,26 +64,22 @@ impl Yarn {
     }
 }
 
-/// Inverse masses for eight rows side by side, column after column.
+/// Inverse masses of a band's rows for eight rows side by side, column after column.
 pub(in crate::solver) fn masses_along_rows(
-    lattice: &Lattice,
     inverse_mass: &[Lane],
-    along_rows: &mut Vec<Lane>,
+    band: Band,
+    along_rows: &mut [Lane],
     instructions: Instructions,
 ) {
-    let nodes = lattice.along_rows.nodes;
-    along_rows.resize(nodes * lattice.rows.div_ceil(LANES), Lane::default());
-    for band in lattice.order().bands() {
-        let packs = along_rows[band.first / LANES * nodes..].chunks_exact_mut(nodes);
-        let columns = inverse_mass[band.blocks()].chunks_exact(band.rows);
-        dispatch!(instructions.level(), simd => {
-            for (pack, some) in packs.zip(packs_of_rows(0..band.rows)) {
-                for (nodes, column) in pack.chunks_exact_mut(LANES).zip(columns.clone()) {
-                    across(simd, column[some.clone()].iter(), nodes.iter_mut());
-                }
+    let columns = inverse_mass.chunks_exact(band.rows);
+    let nodes = columns.len() * LANES;
+    dispatch!(instructions.level(), simd => {
+        for (pack, some) in along_rows.chunks_exact_mut(nodes).zip(packs_of_rows(0..band.rows)) {
+            for (nodes, column) in pack.chunks_exact_mut(LANES).zip(columns.clone()) {
+                across(simd, column[some.clone()].iter(), nodes.iter_mut());
             }
-        });
-    }
+        }
+    });
 }
 
 /// Which threads are solved last: they are held best.
@@ -134,7 +130,8 @@ impl Weave<'_> {
                 Last::Rows => {
                     for band in self.lattice.order().bands() {
                         let (position, previous) = (&mut sheet.position[band.blocks()], &sheet.previous[band.blocks()]);
-                        self.solve_rows::<D>(position, previous, sheet.row_masses, band, loom);
+                        let row_masses = &sheet.row_masses[band.row_masses()];
+                        self.solve_rows::<D>(position, previous, row_masses, band, loom);
                     }
                 }
             }
@@ -212,7 +209,7 @@ impl Weave<'_> {
         first..self.lattice.order().pack_count().min(first + 2)
     }
 
-    /// Solves the rows of a band. `row_masses` are those of all rows.
+    /// Solves the rows of a band.
     pub fn solve_rows<D: Side>(
         &self,
         position: &mut [Block],
@@ -232,7 +229,7 @@ impl Weave<'_> {
             }
             let Loom { rows, position: taken, previous, .. } = &mut *loom;
             let (number, count) = ((band.first + first) / LANES, some.len().div_ceil(LANES) * nodes);
-            let inverse_mass = &row_masses[number * nodes..][..count];
+            let inverse_mass = &row_masses[first / LANES * nodes..][..count];
             let mut pack = Pack { position: &mut taken[..count], previous, inverse_mass, stride: nodes };
             self.solve_packs::<D>(&mut pack, threads, number, rows);
             dispatch!(level, simd => put_rows(simd, taken, nodes, position, band.rows, some));

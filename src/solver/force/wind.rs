@@ -115,10 +115,10 @@ pub(in crate::solver) struct Air {
 impl Air {
     /// Takes the velocity of the air at each particle, once a step.
     pub fn sample(&mut self, particles: &Particles, ctx: &StepContext) {
-        self.velocity.clear();
-        self.velocity.resize(particles.len(), Vec3A::ZERO);
-        self.relative.resize(particles.len(), Vec3A::ZERO);
         if feels_air(ctx) {
+            self.velocity.clear();
+            self.velocity.resize(particles.len(), Vec3A::ZERO);
+            self.relative.resize(particles.len(), Vec3A::ZERO);
             add_air_velocity(ctx.winds, &particles.position, &particles.position, &mut self.velocity);
         }
     }
