@@ -1,10 +1,10 @@
 //! From velocities to positions and back.
 
-use bevy::math::Vec3A;
+use bevy::math::{Vec3A, ops};
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    Lanes,
+    StepContext,
     lanes::{Points, Run},
     simd::{Instructions, Vec3x8, lane},
 };
@@ -23,24 +23,28 @@ pub(super) struct Motion<'a> {
 }
 
 /// Symplectic Euler: velocities from forces (N) and gravity (m/s²), then positions from the new velocities.
-pub(super) fn predict(lanes: &mut Lanes, motion: Motion, instructions: Instructions) {
-    // What was the position is what it was before.
-    core::mem::swap(&mut lanes.position, &mut lanes.previous);
-    dispatch!(instructions.level(), simd => predict_eights(simd, &mut lanes.whole(), motion));
+pub(super) fn predict(run: &mut Run, motion: Motion, instructions: Instructions) {
+    dispatch!(instructions.level(), simd => predict_eights(simd, run, motion));
 }
 
 #[inline(always)]
 fn predict_eights<S: Simd>(simd: S, run: &mut Run, motion: Motion) {
-    let all = run.position.iter_mut().zip(&*run.previous).zip(&mut *run.velocity).zip(&*run.inverse_mass);
+    let all = run.position.iter_mut().zip(&mut *run.previous).zip(&mut *run.velocity).zip(&*run.inverse_mass);
     for (i, (((position, previous), velocity), w)) in all.enumerate() {
-        let (place, before) = (Vec3x8::load(simd, previous), Vec3x8::load(simd, velocity));
-        let (place, velocity_after) = motion.of(simd, run.first + i, place, before, lane(simd, w));
+        let (place, before) = (Vec3x8::load(simd, position), Vec3x8::load(simd, velocity));
+        place.store(previous);
+        let (place, after) = motion.of(simd, run.first + i, place, before, lane(simd, w));
         place.store(position);
-        velocity_after.store(velocity);
+        after.store(velocity);
     }
 }
 
 impl Motion<'_> {
+    /// Gravity and damping for `h` seconds.
+    pub fn free(ctx: &StepContext, h: f32) -> Self {
+        Self { gravity: ctx.gravity, force: None, decay: ops::exp(-ctx.material.damping * h), h }
+    }
+
     /// Where the particles of a block come, and how fast they are then. Fixed ones stay.
     #[inline(always)]
     fn of<S: Simd>(

@@ -18,7 +18,7 @@ use super::{
         weave::{self, Last, Loom, Seam, Sheet, Weave},
     },
     crew::{self, Phase},
-    integrate::{self, Finish},
+    integrate::{self, Finish, Motion},
     lanes::{Band, Order, Run},
 };
 
@@ -75,12 +75,14 @@ pub(super) fn solve(pool: &TaskPool, lanes: &mut Lanes, benches: &mut Vec<Bench>
     crew::run(pool, &[begin, cross, first, second, end]);
 }
 
-/// Takes over the state of a cloth, and says whether an external force acts.
+/// Takes over the state of a cloth, and begins the first substep where no external force acts and there is a motion that
+/// is `free` of others. Says whether an external force acts.
 pub(super) fn load(
     pool: &TaskPool,
     lanes: &mut Lanes,
     particles: &Particles,
     order: Order,
+    free: Option<Motion>,
     instructions: Instructions,
 ) -> bool {
     lanes.fit(order);
@@ -92,7 +94,12 @@ pub(super) fn load(
         weave::masses_along_rows(run.inverse_mass, *band, run.row_masses, instructions);
         is_pushed.fetch_or(particles.is_pushed(band.particles()), Ordering::Relaxed);
     };
-    crew::run(pool, &[Phase { units: runs.len(), work: &load }]);
+    let begin = |number: usize, _| {
+        if let Some(motion) = free.filter(|_| !is_pushed.load(Ordering::Relaxed)) {
+            integrate::predict(&mut lock(&runs[number]).1, motion, instructions);
+        }
+    };
+    crew::run(pool, &[Phase { units: runs.len(), work: &load }, Phase { units: runs.len(), work: &begin }]);
     is_pushed.into_inner()
 }
 

@@ -1,9 +1,6 @@
 //! The loop over the substeps.
 
-use bevy::{
-    math::{Vec3A, ops},
-    tasks::TaskPool,
-};
+use bevy::{math::Vec3A, tasks::TaskPool};
 
 use super::{
     Lattice, LevelPass, Method, Particles, Scratch, StepContext, StepReport, Tethers, Topology,
@@ -46,19 +43,26 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         return StepReport { substeps: 0, needed_substeps: 0, stiffness_scale: 1.0, contacts: 0, steady_force: 0.0 };
     }
     let instructions = scratch.instructions;
+    let is_near = contact::is_any_near(particles, ctx, dt);
+    let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
+    let with_care = is_near || !is_tethered || !ctx.grabs.is_empty();
+    let (wanted, levels) = ctx.effort.of_step(with_care, dt);
     let helpers = helpers(topology, ctx);
+    let mut has_moved = false;
     let is_pushed = match helpers {
-        Some((pool, _)) => share::load(pool, &mut scratch.lanes, particles, topology.order(), instructions),
+        Some((pool, _)) => {
+            let is_free = ctx.grabs.is_empty() && !wind::feels_air(ctx);
+            let free = is_free.then(|| Motion::free(ctx, dt / wanted as f32));
+            let is_pushed = share::load(pool, &mut scratch.lanes, particles, topology.order(), free, instructions);
+            has_moved = is_free && !is_pushed;
+            is_pushed
+        }
         None => {
             scratch.lanes.load(particles, topology.order(), instructions);
             particles.is_pushed(0..particles.len())
         }
     };
     grab::take_up(&mut scratch.lanes, ctx.grabs);
-    let is_near = contact::is_any_near(particles, ctx, dt);
-    let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
-    let with_care = is_near || !is_tethered || !ctx.grabs.is_empty();
-    let (wanted, levels) = ctx.effort.of_step(with_care, dt);
     let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
         Method::Strands => (u32::MAX, wanted, 1.0, levels),
         Method::Xpbd => (u32::MAX, wanted, 1.0, &[][..]),
@@ -80,7 +84,6 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
 
     scratch.air.sample(particles, ctx);
     substep.prepare(scratch);
-    let mut has_moved = false;
     for i in 0..substeps {
         let span = i as f32 / substeps as f32..(i + 1) as f32 / substeps as f32;
         if i % air_interval == 0 {
@@ -201,13 +204,12 @@ impl Substep<'_> {
     /// Moves the particles as if nothing held them together.
     fn move_freely(&self, scratch: &mut Scratch) {
         let Scratch { lanes, applied_force, instructions, .. } = scratch;
-        integrate::predict(lanes, self.motion(applied_force), *instructions);
+        integrate::predict(&mut lanes.whole(), self.motion(applied_force), *instructions);
     }
 
     fn motion<'a>(&self, force: &'a Points) -> Motion<'a> {
-        let decay = ops::exp(-self.ctx.material.damping * self.h);
         let is_applied = self.is_pushed || self.ctx.method == Method::Explicit;
-        Motion { gravity: self.ctx.gravity, force: is_applied.then_some(force), decay, h: self.h }
+        Motion { force: is_applied.then_some(force), ..Motion::free(self.ctx, self.h) }
     }
 
     /// What ends the substep, and begins the next one where that `goes_on` at once.
