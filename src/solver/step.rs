@@ -51,7 +51,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     let mut has_moved = false;
     let is_pushed = match helpers {
         Some((pool, _)) => {
-            let is_free = ctx.grabs.is_empty() && !wind::feels_air(ctx);
+            let is_free = !wind::feels_air(ctx);
             let free = is_free.then(|| Motion::free(ctx, dt / wanted as f32));
             let is_pushed = share::load(pool, &mut scratch.lanes, particles, topology.order(), free, instructions);
             has_moved = is_free && !is_pushed;
@@ -134,11 +134,11 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     StepReport { substeps, needed_substeps, stiffness_scale, contacts, steady_force }
 }
 
-/// The threads that share the work, where it pays and all springs are on the lattice.
+/// The threads that share the work, where it pays: all springs are on the lattice, and no hand holds it.
 fn helpers<'a>(topology: &'a Topology, ctx: &StepContext<'a>) -> Option<(&'a TaskPool, &'a Lattice)> {
     let is_woven = ctx.method == Method::Strands && topology.batches.iter().all(|batch| batch.woven);
     let is_large = topology.particle_count() >= share::LARGE;
-    ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_woven)
+    ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_woven && ctx.grabs.is_empty())
 }
 
 /// What all substeps of a step have in common.
@@ -164,9 +164,8 @@ struct Substep<'a> {
 impl Substep<'_> {
     /// Works out what doesn't change from substep to substep.
     fn prepare(&self, scratch: &mut Scratch) {
-        // Threads have done it already; but hands have changed masses since.
-        let are_rows_known = self.helpers.is_some() && self.ctx.grabs.is_empty();
-        if self.ctx.method == Method::Strands && self.topology.lattice.is_some() && !are_rows_known {
+        // Threads that share the work have done it already.
+        if self.ctx.method == Method::Strands && self.topology.lattice.is_some() && self.helpers.is_none() {
             for band in scratch.lanes.order.bands() {
                 let Run { inverse_mass, row_masses, .. } = scratch.lanes.band(band);
                 weave::masses_along_rows(inverse_mass, band, row_masses, scratch.instructions);
@@ -230,7 +229,6 @@ impl Substep<'_> {
         let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
         if let Some((pool, lattice)) = self.helpers {
             let Scratch { lanes, pins, levels, benches, applied_force, instructions, .. } = scratch;
-            grab::solve_tethers(lanes, self.ctx.grabs, self.ctx.tether_slack);
             let finish = (!self.is_near).then(|| self.finish(applied_force, goes_on));
             let work = Work {
                 weave: Weave { lattice, yarn, instructions: *instructions },

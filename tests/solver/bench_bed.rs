@@ -1,8 +1,11 @@
 //! Small cloths and short ways to step them.
 
+use std::sync::Arc;
+
 use bevy::{
     math::{Mat3A, Vec3A},
     prelude::Mesh,
+    tasks::TaskPool,
 };
 use bevy_drape::{
     build,
@@ -39,6 +42,7 @@ pub struct Bed {
     pub max_velocity: f32,
     pub gravity: Vec3A,
     pub fluid_density: f32,
+    pub pool: Option<Arc<TaskPool>>,
     pub scratch: Scratch,
 }
 
@@ -69,6 +73,7 @@ impl Bed {
             max_velocity: 100.0,
             gravity: Vec3A::NEG_Y * GRAVITY,
             fluid_density: 1.225,
+            pool: None,
             scratch: Scratch::default(),
         }
     }
@@ -136,7 +141,7 @@ impl Bed {
             obstacles: &self.obstacles,
             fluid_density: self.fluid_density,
             winds: &self.winds,
-            pool: None,
+            pool: self.pool.as_deref(),
         };
         step(&mut self.particles, &self.topology, &ctx, &mut self.scratch)
     }

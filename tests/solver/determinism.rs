@@ -1,12 +1,21 @@
 //! The same input gives the same bits.
 
-use bevy::{math::Vec3A, prelude::*};
+use std::sync::Arc;
+
+use bevy::{
+    math::Vec3A,
+    prelude::*,
+    tasks::{TaskPool, TaskPoolBuilder},
+};
 use bevy_drape::{
-    prelude::{ClothGrid, Fabric},
+    prelude::{ClothGrid, ClothGrip, Fabric},
     solver::{ColliderShape, Method, Obstacle},
 };
 
-use crate::bench_bed::{ALL, Bed, bits};
+use crate::{
+    bench_bed::{ALL, Bed, bits},
+    grabs::hand,
+};
 
 fn scene(method: Method) -> Bed {
     let bed = Bed::lying(18, Fabric::default().material().unwrap()).pinned([0, 17]).tethered(&[0, 17]).with_levels();
@@ -47,6 +56,47 @@ fn scratch_carries_nothing_from_one_cloth_to_another() {
             core::mem::swap(&mut b.scratch, &mut other.scratch);
             b.run(0.2);
             assert_eq!(bits(&a.particles), bits(&b.particles), "{method:?} after {}", other.particles.len());
+        }
+    }
+}
+
+/// A cloth that is large enough for several threads to share it, of a size that is no multiple of anything.
+fn large(pins: impl Fn(ClothGrid) -> Vec<u32>) -> Bed {
+    let grid = ClothGrid::new(1.0, 1.2, 101, 133).lying();
+    let fabric = Fabric { shear_damping: 0.001, bend_damping: 0.001, ..Fabric::default() };
+    let pins = pins(grid.clone());
+    Bed::new(grid, fabric.material().unwrap()).pinned(pins.clone()).tethered(&pins[..2]).with_substeps(4).with_levels()
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let two_corners = large(|grid| vec![grid.vertex(0, 0), grid.vertex(100, 0)]);
+    let an_edge = large(|grid| (0..101).map(|column| grid.vertex(column, 0)).collect());
+    let mut pushed = two_corners.clone();
+    pushed.fluid_density = 0.0;
+    let in_a_vacuum = pushed.clone();
+    pushed.particles.force[7000] = Vec3A::new(0.0, 0.02, 0.01);
+    let mut held = an_edge.clone();
+    held.grabs = vec![hand(&held, 9000, [0.2, 0.3, 0.5], ClothGrip::default())];
+    let mut touched = two_corners.clone();
+    touched.obstacles = scene(Method::Strands).obstacles;
+    for (name, bed) in [
+        ("two corners", two_corners),
+        ("an edge", an_edge),
+        ("a vacuum", in_a_vacuum),
+        ("a push", pushed),
+        ("a hand", held),
+        ("an obstacle", touched),
+    ] {
+        let run = |pool: Option<TaskPool>| {
+            let mut bed = Bed { pool: pool.map(Arc::new), ..bed.clone() };
+            bed.run(0.15);
+            bits(&bed.particles)
+        };
+        let alone = run(None);
+        for threads in [1, 3] {
+            let shared = run(Some(TaskPoolBuilder::new().num_threads(threads).build()));
+            assert!(alone == shared, "{name}, {threads} threads that help");
         }
     }
 }

@@ -58,15 +58,16 @@ fn error_of_hooke(bed: &Bed, threads: &[Vec<u32>; 2], stiffness: f32) -> f32 {
 
 #[test]
 fn each_spring_of_a_hanging_thread_is_stretched_by_the_weight_below() {
-    const STIFFNESS: f32 = 20.0;
     let mut failures = Vec::new();
-    // As soft as that, springs give by much of their length within a substep where those are few.
-    for count in [10, 40] {
-        for (are_columns, substeps) in [(true, 8), (false, 8), (true, 24)] {
-            let (bed, threads) = threads(count, are_columns, only(SpringKind::Structural, STIFFNESS));
+    // As soft as that, springs give by much of their length within a substep where those are few. The longest goes through
+    // several bands of rows.
+    for (count, stiffness) in [(10, 20.0), (40, 20.0), (150, 300.0)] {
+        let few = if count > 64 { 24 } else { 8 };
+        for (are_columns, substeps) in [(true, few), (false, few), (true, 24)] {
+            let (bed, threads) = threads(count, are_columns, only(SpringKind::Structural, stiffness));
             let mut bed = bed.with_substeps(substeps);
             bed.run(8.0);
-            let error = error_of_hooke(&bed, &threads, STIFFNESS);
+            let error = error_of_hooke(&bed, &threads, stiffness);
             let case = format!("{count} particles, columns {are_columns}, {substeps} substeps: off by {error}");
             println!("{case}, {} m/s", bed.fastest());
             failures.extend((error > 0.003).then_some(case));
@@ -205,4 +206,34 @@ fn more_substeps_are_taken_near_an_obstacle_and_without_tethers() {
     assert_eq!(bed.step(FRAME).substeps, 2, "by hand they are as many everywhere");
     bed.method = Method::Xpbd;
     assert_eq!(bed.step(FRAME).substeps, 2);
+}
+
+#[test]
+fn a_tall_cloth_sways_like_a_wide_one_that_is_turned() {
+    // The tall one is cut into bands of rows, the wide one isn't.
+    let (long, short) = (70, 9);
+    let fabric = Fabric { damping: 4.0, ..Fabric::default() };
+    let place = |is_tall: bool| {
+        let (columns, rows) = if is_tall { (short, long) } else { (long, short) };
+        let grid = ClothGrid::new(0.1 * columns as f32, 0.1 * rows as f32, columns, rows);
+        let particle = |along: u32, across: u32| {
+            if is_tall { grid.vertex(across, along) } else { grid.vertex(along, across) }
+        };
+        let bed = Bed::new(grid, bare(fabric.clone())).pinned((0..short).map(|across| particle(0, across)));
+        let (down, aside) = if is_tall { (Vec3A::NEG_Y, Vec3A::X) } else { (Vec3A::X, Vec3A::NEG_Y) };
+        let mut bed = bed.with_substeps(16);
+        bed.material.damping = fabric.damping;
+        bed.gravity = 2.0 * down + aside;
+        bed.run(4.0);
+        (0..long)
+            .flat_map(|along| (0..short).map(move |across| particle(along, across) as usize))
+            .map(|i| bed.particles.position[i] - Vec3A::from(bed.topology.rest[i]))
+            .map(|way| [way.dot(down), way.dot(aside)])
+            .collect::<Vec<_>>()
+    };
+    let (tall, wide) = (place(true), place(false));
+    let largest = tall.iter().flatten().fold(0.0_f32, |most, way| most.max(way.abs()));
+    let apart = tall.iter().flatten().zip(wide.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    println!("they move by {largest} m, and are {apart} m apart");
+    assert!(largest > 0.1 && apart < 0.002, "{largest} m, {apart} m apart");
 }
