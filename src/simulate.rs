@@ -2,7 +2,13 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use bevy::{ecs::system::NonSendMarker, math::Vec3A, platform::time::Instant, prelude::*, tasks::TaskPool};
+use bevy::{
+    ecs::system::{NonSendMarker, SystemParam},
+    math::Vec3A,
+    platform::time::Instant,
+    prelude::*,
+    tasks::TaskPool,
+};
 
 use crate::{
     cloth::{Cloth, ClothGravity, ClothReset, ClothSolver, ClothStatus, ResetCause},
@@ -28,14 +34,20 @@ impl Workshop {
     }
 }
 
+/// What acts on all cloths.
+#[derive(SystemParam)]
+pub(crate) struct Surroundings<'w> {
+    gravity: Res<'w, ClothGravity>,
+    obstacles: Res<'w, Obstacles>,
+    winds: Res<'w, Winds>,
+}
+
 /// Steps all cloths, several at a time: each reads what is shared and writes only itself, so the order doesn't matter.
 pub(crate) fn step_cloths(
     mut cloths: Query<(&ClothStatus, &mut ClothState)>,
     run: Res<ClothRun>,
     time: Res<Time>,
-    gravity: Res<ClothGravity>,
-    obstacles: Res<Obstacles>,
-    winds: Res<Winds>,
+    Surroundings { gravity, obstacles, winds }: Surroundings,
     workshop: Local<Workshop>,
     _main_thread: NonSendMarker,
 ) {

@@ -19,6 +19,7 @@ pub mod weave;
 mod crew;
 mod integrate;
 mod lanes;
+mod order;
 mod share;
 mod step;
 

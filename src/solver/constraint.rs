@@ -2,6 +2,7 @@
 
 pub(super) mod anchor;
 pub(super) mod braid;
+pub(super) mod diagonal;
 pub mod grab;
 pub(super) mod level;
 pub mod spring;

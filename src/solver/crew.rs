@@ -63,7 +63,7 @@ impl Progress {
                 break;
             }
             // Every other worker begins at the far end: what one had in the last phase it mostly has in the next.
-            let unit = if worker % 2 == 0 {
+            let unit = if worker.is_multiple_of(2) {
                 self.first.fetch_add(1, Ordering::Relaxed)
             } else {
                 phase.units - 1 - self.last.fetch_add(1, Ordering::Relaxed)

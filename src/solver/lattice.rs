@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::{
-    lanes::Order,
+    order::Order,
     simd::{LANES, Lane},
 };
 

@@ -4,13 +4,7 @@ use bevy::math::Vec3A;
 
 use super::{
     Instructions, Lanes,
-    constraint::{
-        braid::Spool,
-        level::Levels,
-        spring::Beads,
-        tether::PinPlaces,
-        weave::{Loom, Seam},
-    },
+    constraint::{braid::Spool, diagonal::Seam, level::Levels, spring::Beads, tether::PinPlaces, weave::Loom},
     force::wind::Air,
     lanes::Points,
     share::Bench,

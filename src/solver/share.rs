@@ -11,15 +11,17 @@ use bevy::tasks::TaskPool;
 use super::{
     Instructions, Lanes, Particles,
     constraint::{
+        diagonal::{self, Seam},
         level::{LevelRun, Levels},
         spring::Scaled,
         strand::Both,
         tether::{self, PinPlaces, TetherBlock},
-        weave::{self, Last, Loom, Seam, Sheet, Weave},
+        weave::{self, Last, Loom, Sheet, Weave},
     },
     crew::{self, Phase},
     integrate::{self, Finish, Motion},
-    lanes::{Band, Order, Run},
+    lanes::Run,
+    order::{Band, Order},
 };
 
 /// Particles from which on it pays: below, waking another thread takes as long as the work.
@@ -143,7 +145,7 @@ impl Cloth<'_> {
         }
         tether::solve(position, inverse_mass, *first, tethers, pins, slack, instructions);
         let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
-        weave::solve_band_diagonals(&mut sheet, band, 0, lattice, shear, instructions);
+        diagonal::solve_band(&mut sheet, band, 0, lattice, shear, instructions);
     }
 
     /// The diagonals below odd rows, and those to the band above: they have no particle in common.
@@ -154,7 +156,7 @@ impl Cloth<'_> {
             let mut run = lock(&self.runs[number]);
             let Run { position, previous, inverse_mass, .. } = &mut *run;
             let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
-            weave::solve_band_diagonals(&mut sheet, band, 1, lattice, shear, instructions);
+            diagonal::solve_band(&mut sheet, band, 1, lattice, shear, instructions);
         }
         let Some(above) = number.checked_sub(1) else { return };
         let seam = &mut lock(&self.benches[worker]).seam;

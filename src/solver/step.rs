@@ -1,26 +1,19 @@
 //! The loop over the substeps.
 
-use bevy::{math::Vec3A, tasks::TaskPool};
+use bevy::tasks::TaskPool;
 
 use super::{
-    Lattice, LevelPass, Method, Particles, Scratch, StepContext, StepReport, Tethers, Topology,
-    constraint::{
-        anchor,
-        braid::Strung,
-        grab,
-        level::LevelRun,
-        spring::{self, Scaled},
-        strand::Both,
-        tether,
-        weave::{self, Last, Sheet, Weave, Yarn},
-    },
+    Lattice, Method, Particles, Scratch, StepContext, StepReport, Topology,
+    constraint::{anchor, grab, weave::Last},
     contact, explicit,
     force::wind,
-    integrate::{self, Finish, Motion, SpeedLimit},
-    lanes::{Points, Run},
-    share::{self, Work},
-    topology::SpringKind,
+    integrate::{self, Motion, SpeedLimit},
+    share,
 };
+
+mod substep;
+
+use substep::Substep;
 
 /// Longest time step that is simulated, s. A longer one is cut down to it: after a stall the cloth falls behind the
 /// clock instead of being thrown about.
@@ -139,163 +132,4 @@ fn helpers<'a>(topology: &'a Topology, ctx: &StepContext<'a>) -> Option<(&'a Tas
     let is_woven = ctx.method == Method::Strands && topology.batches.iter().all(|batch| batch.woven);
     let is_large = topology.particle_count() >= share::LARGE;
     ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_woven && ctx.grabs.is_empty())
-}
-
-/// What all substeps of a step have in common.
-#[derive(Clone, Copy)]
-struct Substep<'a> {
-    topology: &'a Topology,
-    ctx: &'a StepContext<'a>,
-    /// Duration, s.
-    h: f32,
-    /// Share of the stiffness and damping that is used.
-    stiffness_scale: f32,
-    /// Whether anything but gravity acts.
-    is_pushed: bool,
-    /// Whether anything is so near that it may be touched.
-    is_near: bool,
-    limit: SpeedLimit,
-    /// The threads that share the work, and the lattice that all springs are on.
-    helpers: Option<(&'a TaskPool, &'a Lattice)>,
-    last: Last,
-    levels: &'a [LevelPass],
-}
-
-impl Substep<'_> {
-    /// Works out what doesn't change from substep to substep.
-    fn prepare(&self, scratch: &mut Scratch) {
-        // Threads that share the work have done it already.
-        if self.ctx.method == Method::Strands && self.topology.lattice.is_some() && self.helpers.is_none() {
-            for band in scratch.lanes.order.bands() {
-                let Run { inverse_mass, row_masses, .. } = scratch.lanes.band(band);
-                weave::masses_along_rows(inverse_mass, band, row_masses, scratch.instructions);
-            }
-        }
-        if let Some(run) = self.levels(scratch) {
-            scratch.levels.fit(&run, &scratch.lanes);
-        }
-    }
-
-    /// Sums up the forces that act for the next `interval` substeps.
-    fn renew_steady_force(&self, particles: &mut Particles, interval: u32, scratch: &mut Scratch) {
-        let Scratch { lanes, air, steady_force, applied_force, instructions, .. } = scratch;
-        if !self.is_pushed {
-            return;
-        }
-        steady_force.clone_from(&particles.force);
-        if wind::feels_air(self.ctx) {
-            lanes.store(particles, *instructions);
-            wind::apply_air(particles, self.topology, self.ctx, self.h * interval as f32, air, steady_force);
-        }
-        applied_force.load(lanes.order, steady_force, *instructions);
-    }
-
-    /// Adds the forces of the springs to the steady one.
-    fn add_spring_forces(&self, particles: &mut Particles, scratch: &mut Scratch) {
-        let Scratch { lanes, steady_force, force, applied_force, instructions, .. } = scratch;
-        steady_force.resize(particles.len(), Vec3A::ZERO);
-        force.clone_from(steady_force);
-        lanes.store(particles, *instructions);
-        explicit::add_spring_forces(particles, self.topology, &self.ctx.material, self.stiffness_scale, force);
-        applied_force.load(lanes.order, force, *instructions);
-    }
-
-    /// Moves the particles as if nothing held them together.
-    fn move_freely(&self, scratch: &mut Scratch) {
-        let Scratch { lanes, applied_force, instructions, .. } = scratch;
-        integrate::predict(&mut lanes.whole(), self.motion(applied_force), *instructions);
-    }
-
-    fn motion<'a>(&self, force: &'a Points) -> Motion<'a> {
-        let is_applied = self.is_pushed || self.ctx.method == Method::Explicit;
-        Motion { force: is_applied.then_some(force), ..Motion::free(self.ctx, self.h) }
-    }
-
-    /// What ends the substep, and begins the next one where that `goes_on` at once.
-    fn finish<'a>(&self, force: &'a Points, goes_on: bool) -> Finish<'a> {
-        Finish { limit: self.limit, h: self.h, next: goes_on.then(|| self.motion(force)) }
-    }
-
-    /// Coarse levels, tethers, and then the springs: threads as strands, the last and best held. Of a large cloth threads
-    /// also finish the substep: true where they did.
-    fn solve_strands(&self, scratch: &mut Scratch, goes_on: bool) -> bool {
-        let run = self.levels(scratch);
-        if let Some(run) = &run {
-            let Scratch { lanes, loom, pins, levels, .. } = scratch;
-            levels.solve(run, lanes, pins, loom);
-        }
-        let scaled = |kind| Scaled::new(self.ctx.material.spring(kind), self.h);
-        let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
-        let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
-        if let Some((pool, lattice)) = self.helpers {
-            let Scratch { lanes, pins, levels, benches, applied_force, instructions, .. } = scratch;
-            let finish = (!self.is_near).then(|| self.finish(applied_force, goes_on));
-            let work = Work {
-                weave: Weave { lattice, yarn, instructions: *instructions },
-                shear: scaled(SpringKind::Shear),
-                last: self.last,
-                levels: run.as_ref().map(|run| (run, &*levels)),
-                tethers: self.ctx.tethers.map_or(&[], Tethers::of_cloth),
-                pins,
-                slack: self.ctx.tether_slack,
-                finish,
-            };
-            share::solve(pool, lanes, benches, &work);
-            return finish.is_some();
-        }
-        if let Some(run) = &run {
-            for band in scratch.lanes.order.bands() {
-                let Run { position, inverse_mass, .. } = scratch.lanes.band(band);
-                scratch.levels.move_band(run, position, inverse_mass, band);
-            }
-        }
-        self.solve_tethers(scratch);
-        let Scratch { lanes, beads, loom, spool, seam, instructions, .. } = scratch;
-        let (material, h) = (&self.ctx.material, self.h);
-        let loose = self.topology.batches.iter().filter(|batch| !batch.woven);
-        let braids = &self.topology.braids;
-        let strung = (!braids.is_empty()).then_some(Strung { braids, yarn, spool });
-        spring::solve(lanes, self.topology, loose, material, h, beads, strung, *instructions);
-        if let Some(lattice) = &self.topology.lattice {
-            let mut sheet = Sheet {
-                position: &mut lanes.position.0,
-                previous: &lanes.previous.0,
-                inverse_mass: &lanes.inverse_mass,
-                row_masses: &lanes.row_masses,
-            };
-            weave::solve_diagonals(&mut sheet, lattice, scaled(SpringKind::Shear), seam, *instructions);
-            Weave { lattice, yarn, instructions: *instructions }.solve::<Both>(&mut sheet, self.last, loom);
-        }
-        false
-    }
-
-    /// All springs, colour after colour.
-    fn solve_springs(&self, scratch: &mut Scratch) {
-        let batches = self.topology.batches.iter();
-        let Scratch { lanes, beads, instructions, .. } = scratch;
-        spring::solve(lanes, self.topology, batches, &self.ctx.material, self.h, beads, None, *instructions);
-    }
-
-    /// Tethers to hands, then those to pins.
-    fn solve_tethers(&self, scratch: &mut Scratch) {
-        let Scratch { lanes, pins, instructions, .. } = scratch;
-        grab::solve_tethers(lanes, self.ctx.grabs, self.ctx.tether_slack);
-        if let Some(tethers) = self.ctx.tethers {
-            let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
-            tether::solve(position, inverse_mass, 0, tethers.of_cloth(), pins, self.ctx.tether_slack, *instructions);
-        }
-    }
-
-    /// The coarse levels, if there are tethers: both hold the cloth within its length.
-    fn levels(&self, scratch: &Scratch) -> Option<LevelRun<'_>> {
-        Some(LevelRun {
-            levels: &self.topology.levels,
-            passes: self.levels,
-            tethers: self.ctx.tethers.filter(|tethers| !tethers.is_empty())?,
-            slack: self.ctx.tether_slack,
-            stretch: Scaled::new(self.ctx.material.spring(SpringKind::Structural), self.h),
-            last: self.last,
-            instructions: scratch.instructions,
-        })
-    }
 }

@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use bevy::math::Vec3;
 
-use super::{Braid, Lattice, Level, lanes::Order};
+use super::{Braid, Lattice, Level, order::Order};
 
 /// What a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -64,7 +64,7 @@ fn scratch_carries_nothing_from_one_cloth_to_another() {
 fn large(pins: impl Fn(ClothGrid) -> Vec<u32>) -> Bed {
     let grid = ClothGrid::new(1.0, 1.2, 101, 133).lying();
     let fabric = Fabric { shear_damping: 0.001, bend_damping: 0.001, ..Fabric::default() };
-    let pins = pins(grid.clone());
+    let pins = pins(grid);
     Bed::new(grid, fabric.material().unwrap()).pinned(pins.clone()).tethered(&pins[..2]).with_substeps(4).with_levels()
 }
 

@@ -22,7 +22,7 @@ pub(in crate::solver) fn mean_velocity(anchors: &[Anchor], dt: f32) -> Vec3A {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::lanes::Order;
+    use crate::solver::order::Order;
     #[test]
     fn a_pin_goes_straight_and_steadily_over_the_step() {
         let mut lanes = Lanes { order: Order::plain(1), ..Lanes::default() };

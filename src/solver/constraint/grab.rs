@@ -24,11 +24,7 @@ use std::sync::Arc;
 use bevy::math::Vec3A;
 
 use super::tether;
-use crate::solver::{
-    Lanes,
-    lanes::{Order, Points},
-    simd::LANES,
-};
+use crate::solver::{Lanes, lanes::Points, order::Order, simd::LANES};
 
 /// A hand on its way over one step.
 #[derive(Clone, Debug, PartialEq)]

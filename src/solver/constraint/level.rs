@@ -26,8 +26,9 @@ use super::{
 };
 use crate::solver::{
     Lanes, Level, LevelPass, Tethers,
-    lanes::{Band, Block, Order, Points},
+    lanes::{Block, Points},
     level::{Between, Spread, Transfer},
+    order::{Band, Order},
     simd::{Instructions, LANES, Lane, Vec3x8, lane},
 };
 

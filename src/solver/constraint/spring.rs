@@ -238,7 +238,7 @@ pub fn strain(position: &[Vec3A], spring: &Spring) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::{Particles, SpringKind, lanes::Order};
+    use crate::solver::{Particles, SpringKind, order::Order};
 
     fn pair(distance: f32) -> (Lanes, Topology) {
         let mut lanes = Lanes::default();

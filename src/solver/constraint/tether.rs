@@ -11,8 +11,9 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use crate::solver::{
     Lanes, Level, Topology,
-    lanes::{Block, Order},
+    lanes::Block,
     level::Transfer,
+    order::Order,
     simd::{Instructions, LANES, Lane, Vec3x8, lane},
 };
 
