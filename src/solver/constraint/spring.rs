@@ -18,8 +18,8 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 use super::braid::Strung;
 use crate::solver::{
     Lanes, Material, Spring, SpringBatch, SpringConstants, Topology,
-    lanes::{apart, together},
-    simd::{Instructions, LANES, SHORTEST, Vec3Wide, Vec3x8, Wide, lane},
+    lanes::{Block, apart, together},
+    simd::{Instructions, LANES, Lane, SHORTEST, Vec3Wide, Vec3x8, Wide, lane},
 };
 
 /// k h² and c h of springs in a substep of h seconds, kg.
@@ -39,6 +39,9 @@ impl Scaled {
         self.k + self.c > 0.0
     }
 }
+
+/// Springs are few where there are so many particles for each: going to the beads and back would take longer.
+const FEW: usize = 4;
 
 /// One end of springs side by side.
 #[derive(Clone, Copy, Debug)]
@@ -166,7 +169,7 @@ fn bead<'a>(beads: &'a [[f32; 4]], i: &u32) -> &'a [f32; 4] {
 pub(in crate::solver) fn solve<'a>(
     lanes: &mut Lanes,
     topology: &Topology,
-    batches: impl Iterator<Item = &'a SpringBatch>,
+    batches: impl Iterator<Item = &'a SpringBatch> + Clone,
     material: &Material,
     h: f32,
     beads: &mut Beads,
@@ -174,9 +177,18 @@ pub(in crate::solver) fn solve<'a>(
     instructions: Instructions,
 ) {
     let level = instructions.level();
-    let mut batches = batches.map(|batch| (batch, Scaled::new(material.spring(batch.kind), h)));
-    let mut batches = batches.by_ref().filter(|(_, constants)| constants.acts()).peekable();
-    if batches.peek().is_none() && braids.is_none() {
+    let batches = batches.map(|batch| (batch, Scaled::new(material.spring(batch.kind), h)));
+    let batches = batches.filter(|(_, constants)| constants.acts());
+    let count: usize = batches.clone().map(|(batch, _)| batch.range.len()).sum();
+    if braids.is_none() && count * FEW <= lanes.order.particle_count() {
+        for (batch, constants) in batches {
+            let springs = &topology.springs[batch.range.clone()];
+            if constants.c > 0.0 {
+                dispatch!(level, simd => solve_scattered::<_, true>(simd, lanes, springs, constants));
+            } else {
+                dispatch!(level, simd => solve_scattered::<_, false>(simd, lanes, springs, constants));
+            }
+        }
         return;
     }
     if material.springs.iter().any(|spring| spring.damping > 0.0) {
@@ -196,6 +208,44 @@ pub(in crate::solver) fn solve<'a>(
         strung.solve(beads, instructions);
     }
     dispatch!(level, simd => beads.write(simd, lanes));
+}
+
+/// Springs of one batch that are few among many particles, as along the seam of a tube: the particles stay where they
+/// are.
+#[inline(always)]
+fn solve_scattered<S: Simd, const DAMPED: bool>(simd: S, lanes: &mut Lanes, springs: &[Spring], constants: Scaled) {
+    for springs in springs.chunks(LANES) {
+        let mut ends = [(Block::default(), Block::default(), Lane::default()); 2];
+        let mut rest = Lane::default();
+        for (i, spring) in springs.iter().enumerate() {
+            rest[i] = spring.rest;
+            for ((position, previous, inverse_mass), particle) in ends.iter_mut().zip([spring.a, spring.b]) {
+                let slot = lanes.order.slot(particle);
+                (position[0][i], position[1][i], position[2][i]) = lanes.position.get(slot).into();
+                (previous[0][i], previous[1][i], previous[2][i]) = lanes.previous.get(slot).into();
+                inverse_mass[i] = lanes.inverse_mass(slot);
+            }
+        }
+        let [a, b] = &ends;
+        let moved = solve_abreast::<_, _, DAMPED>(simd, end(simd, a), end(simd, b), lane(simd, &rest), constants);
+        for (at, end) in moved.into_iter().zip(&mut ends) {
+            at.store(&mut end.0);
+        }
+        for (i, spring) in springs.iter().enumerate() {
+            for (([x, y, z], ..), particle) in ends.iter().zip([spring.a, spring.b]) {
+                lanes.position.set(lanes.order.slot(particle), Vec3A::new(x[i], y[i], z[i]));
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn end<S: Simd>(simd: S, (position, previous, inverse_mass): &(Block, Block, Lane)) -> End<f32x8<S>> {
+    End {
+        position: Vec3x8::load(simd, position),
+        previous: Vec3x8::load(simd, previous),
+        inverse_mass: lane(simd, inverse_mass),
+    }
 }
 
 /// Springs of one batch share no particle, so any eight of them may be solved side by side.
