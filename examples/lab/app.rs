@@ -42,7 +42,7 @@ pub fn one_cloth(options: &Options) -> io::Result<Value> {
             empties.push(nothing);
             updates.push(update);
             solvers.push(solver);
-            around.push(update - nothing - solver);
+            around.push(update - bare - solver);
         }
     }
     Ok(json!({

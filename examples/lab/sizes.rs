@@ -25,7 +25,9 @@ pub fn run(sizes: &[u32]) -> io::Result<()> {
         let found = FOUND.iter().find(|&&(up_to, _)| n <= up_to).map(|&(_, settings)| settings);
         for settings in ["--max-strain 0.01"].into_iter().chain(found) {
             for threads in [1, 2] {
-                println!("{}", measure(&format!("hang --n {n} {settings} --threads {threads}"))?);
+                let mut line = measure(&format!("hang --n {n} {settings} --threads {threads}"))?;
+                line["settings"] = settings.into();
+                println!("{line}");
             }
         }
     }
