@@ -182,7 +182,8 @@ fn quantity(what: &str, value: f64) -> String {
     match what {
         _ if what.ends_with("strain") => percent(value as f32),
         _ if what.starts_with("us_") => format!("{value:.0} µs"),
-        "rms_05s_m" | "max_penetration_m" => format!("{:.1} mm", 1000.0 * value),
+        "rms_05s_m" => format!("{:.1} mm", 1e3 * value),
+        "max_penetration_m" => format!("{:.2} µm", 1e6 * value),
         "max_speed_end" => format!("{value:.3} m/s"),
         "share" => format!("{:.0} %", 100.0 * value),
         _ => format!("{value:.1}"),
