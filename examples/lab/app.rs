@@ -17,12 +17,13 @@ use super::{Options, PinnedPart, Solver, measure, mesh::MeshSource, scene};
 /// Frames before the measurement: pools and buffers fill.
 const WARM_UP: u32 = 30;
 
-/// The hanging cloth in an app, against the same app without it and against its solver alone. The three take turns, so
-/// that whatever else the machine does meets them alike.
+/// The hanging cloth in an app, against the same app without it, one without the plugin, and the solver alone. They take
+/// turns, so that whatever else the machine does meets them alike.
 pub fn one_cloth(options: &Options) -> io::Result<Value> {
     let plugin = ClothPlugin::default().single_threaded();
-    let mut empty = headless(plugin);
-    let mut app = headless(plugin);
+    let mut bare = headless(None);
+    let mut empty = headless(Some(plugin));
+    let mut app = headless(Some(plugin));
     spawn_hanging(&mut app, options);
     let mut scene = scene::hang(options, &MeshSource::Grid, PinnedPart::Corners)?;
     let mut scratch = Scratch::default();
@@ -31,20 +32,23 @@ pub fn one_cloth(options: &Options) -> io::Result<Value> {
         solver::step(&mut particles, &scene.topology, &scene.context(options, None), &mut scratch);
         scene.particles = particles;
     };
-    let [mut updates, mut empties, mut solvers, mut around] = [const { Vec::new() }; 4];
+    let [mut updates, mut empties, mut bares, mut solvers, mut around] = [const { Vec::new() }; 5];
     for frame in 0..WARM_UP + options.frames {
+        let bare = microseconds(|| bare.update());
         let [nothing, update, solver] =
             [microseconds(|| empty.update()), microseconds(|| app.update()), microseconds(&mut step)];
         if frame >= WARM_UP {
+            bares.push(bare);
             empties.push(nothing);
             updates.push(update);
             solvers.push(solver);
-            around.push(update - nothing - solver);
+            around.push(update - bare - solver);
         }
     }
     Ok(json!({
         "scene": "app",
         "n": options.n,
+        "us_per_update_without_plugin": measure::median(bares).round(),
         "us_per_update_empty": measure::median(empties).round(),
         "us_per_update": measure::median(updates).round(),
         "us_solver": measure::median(solvers).round(),
@@ -76,7 +80,7 @@ fn spawn_hanging(app: &mut App, options: &Options) {
 
 /// A hanging cloth until its mesh has become cloth. Time stands still, so that no step is in the frames.
 pub fn building(options: &Options) -> Value {
-    let mut app = headless(ClothPlugin::default());
+    let mut app = headless(Some(ClothPlugin::default()));
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     for _ in 0..WARM_UP {
         app.update();
@@ -102,14 +106,14 @@ pub fn building(options: &Options) -> Value {
     })
 }
 
-/// A hundred flags on their poles.
-pub fn many_flags(frames: u32, single_threaded: bool) -> Value {
+/// Flags on their poles, ten in a row.
+pub fn many_flags(cloths: u32, frames: u32, single_threaded: bool) -> Value {
     let plugin = ClothPlugin::default();
     let plugin = if single_threaded { plugin.single_threaded() } else { plugin };
-    let empty = frame_microseconds(&mut headless(plugin), frames);
-    let mut app = headless(plugin);
+    let empty = frame_microseconds(&mut headless(Some(plugin)), frames);
+    let mut app = headless(Some(plugin));
     let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(ClothGrid::new(1.0, 0.62, 32, 20));
-    for i in 0..100 {
+    for i in 0..cloths {
         app.world_mut().spawn((
             Mesh3d(mesh.clone()),
             Cloth::default(),
@@ -122,8 +126,8 @@ pub fn many_flags(frames: u32, single_threaded: bool) -> Value {
     let update = frame_microseconds(&mut app, frames);
     json!({
         "scene": "many",
-        "cloths": 100,
-        "particles": 100 * 32 * 20,
+        "cloths": cloths,
+        "particles": cloths * 32 * 20,
         "threads": if single_threaded { 1 } else { bevy::tasks::available_parallelism() },
         "ms_per_update_empty": empty / 1000.0,
         "ms_per_update": update / 1000.0,
@@ -131,12 +135,15 @@ pub fn many_flags(frames: u32, single_threaded: bool) -> Value {
 }
 
 /// An app that steps once an update.
-fn headless(plugin: ClothPlugin) -> App {
+fn headless(plugin: Option<ClothPlugin>) -> App {
     let frame = Duration::from_secs_f32(scene::FRAME);
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin, plugin))
+    app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin))
         .insert_resource(Time::<Fixed>::from_duration(frame))
         .insert_resource(TimeUpdateStrategy::ManualDuration(frame));
+    if let Some(plugin) = plugin {
+        app.add_plugins(plugin);
+    }
     app.finish();
     app.cleanup();
     app

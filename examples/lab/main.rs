@@ -4,6 +4,7 @@
 //! cargo run --release --example lab -- hang --n 64 --substeps 8 --frames 300 --solver xpbd
 //! cargo run --release --example lab -- hang --n 64 --mesh delaunay --compare-oracle
 //! cargo run --release --example lab -- drape --n 64 --mesh assets/flag.glb
+//! cargo run --release --example lab -- --sweep
 //! cargo run --release --example lab -- --help
 //! ```
 
@@ -19,6 +20,9 @@ mod mesh;
 mod oracle;
 mod pins;
 mod scene;
+mod shares;
+mod sizes;
+mod sweep;
 mod threads;
 
 use mesh::MeshSource;
@@ -26,9 +30,13 @@ use oracle::Oracle;
 
 #[derive(Parser)]
 #[command(about = "Experiments without a window: one JSON line each on standard output")]
+#[command(args_conflicts_with_subcommands = true, arg_required_else_help = true)]
 struct Cli {
+    /// Measures all that has a target, in two minutes: one line each
+    #[arg(long)]
+    sweep: bool,
     #[command(subcommand)]
-    experiment: Experiment,
+    experiment: Option<Experiment>,
 }
 
 #[derive(Subcommand)]
@@ -58,8 +66,11 @@ enum Experiment {
         #[command(flatten)]
         options: Options,
     },
-    /// What a frame costs with a hundred flags of 32 x 20 particles in the wind
+    /// What a frame costs with many flags of 32 x 20 particles in the wind
     Many {
+        /// Flags
+        #[arg(long, default_value_t = 100)]
+        cloths: u32,
         /// Frames of 1/60 s
         #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..))]
         frames: u32,
@@ -69,6 +80,18 @@ enum Experiment {
     },
     /// What threads gain: one hanging cloth shared by them, against as many cloths as threads side by side
     Threads {
+        #[command(flatten)]
+        options: Options,
+    },
+    /// Hanging cloths of several sizes, by the strain and at settings that were found for each, on one and two threads: a
+    /// line each
+    Sizes {
+        /// Particles along each side
+        #[arg(long, num_args = 1.., default_values_t = sizes::ALL)]
+        n: Vec<u32>,
+    },
+    /// Where the time of the hanging cloth's frame goes, found by leaving out one thing after the other
+    Shares {
         #[command(flatten)]
         options: Options,
     },
@@ -82,7 +105,7 @@ enum Experiment {
     },
 }
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 struct Options {
     /// Particles along each side, n; n² or about as many on other meshes than the grid, and without effect on a file
     #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=1024))]
@@ -111,6 +134,9 @@ struct Options {
     /// By how much of its length a tether gives
     #[arg(long, default_value_t = 0.002)]
     tether_slack: f32,
+    /// Stiffness of springs along the threads, of those along diagonals, and of those that bend, N/m; 0 leaves them out
+    #[arg(long, value_names = ["STRUCTURAL", "SHEAR", "BEND"], num_args = 3, default_values_t = [5000.0, 500.0, 20.0])]
+    stiffness: Vec<f32>,
     /// Damping of the velocity, 1/s
     #[arg(long, default_value_t = 1.0)]
     damping: f32,
@@ -187,12 +213,8 @@ enum Switch {
 }
 
 fn main() -> ExitCode {
-    let Cli { experiment } = Cli::parse();
-    match run(&experiment) {
-        Ok(line) => {
-            println!("{line}");
-            ExitCode::SUCCESS
-        }
+    match run(Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("{error}");
             ExitCode::FAILURE
@@ -200,21 +222,42 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(experiment: &Experiment) -> io::Result<Value> {
+/// Prints a line for each measurement as soon as it is there.
+fn run(Cli { sweep, experiment }: Cli) -> io::Result<()> {
     match experiment {
-        Experiment::Hang { options, mesh, pins, compare_oracle } => {
-            if *compare_oracle && options.frames < oracle::FRAME {
-                let need = format!("--compare-oracle compares after {} frames; run as many or more", oracle::FRAME);
-                return Err(io::Error::other(need));
+        _ if sweep => sweep::run(),
+        Some(Experiment::Sizes { n }) => sizes::run(&n),
+        Some(experiment) => experiment.measure().map(|line| println!("{line}")),
+        None => Ok(()),
+    }
+}
+
+/// Measures what `arguments` ask for on a command line of the lab.
+fn measure(arguments: &str) -> io::Result<Value> {
+    let words = ["lab"].into_iter().chain(arguments.split(' '));
+    let experiment = Cli::try_parse_from(words).map_err(io::Error::other)?.experiment;
+    experiment.ok_or_else(|| io::Error::other("there is nothing to measure"))?.measure()
+}
+
+impl Experiment {
+    fn measure(&self) -> io::Result<Value> {
+        match self {
+            Self::Hang { options, mesh, pins, compare_oracle } => {
+                if *compare_oracle && options.frames < oracle::FRAME {
+                    let need = format!("--compare-oracle compares after {} frames; run as many or more", oracle::FRAME);
+                    return Err(io::Error::other(need));
+                }
+                let scene = scene::hang(options, mesh, *pins)?;
+                let oracle = compare_oracle.then(|| Oracle::run(&scene, &scene.context(options, None)));
+                measure::run("hang", options, scene, oracle.as_ref())
             }
-            let scene = scene::hang(options, mesh, *pins)?;
-            let oracle = compare_oracle.then(|| Oracle::run(&scene, &scene.context(options, None)));
-            measure::run("hang", options, scene, oracle.as_ref())
+            Self::Drape { options, mesh } => measure::run("drape", options, scene::drape(options, mesh)?, None),
+            Self::Threads { options } => threads::compare(options),
+            Self::Shares { options } => shares::of_frame(options),
+            Self::App { options } => app::one_cloth(options),
+            Self::Build { options } => Ok(app::building(options)),
+            Self::Many { cloths, frames, single_threaded } => Ok(app::many_flags(*cloths, *frames, *single_threaded)),
+            Self::Sizes { .. } => Err(io::Error::other("sizes are several measurements")),
         }
-        Experiment::Drape { options, mesh } => measure::run("drape", options, scene::drape(options, mesh)?, None),
-        Experiment::Threads { options } => threads::compare(options),
-        Experiment::App { options } => app::one_cloth(options),
-        Experiment::Build { options } => Ok(app::building(options)),
-        Experiment::Many { frames, single_threaded } => Ok(app::many_flags(*frames, *single_threaded)),
     }
 }

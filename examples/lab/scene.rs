@@ -10,8 +10,8 @@ use bevy::{
 use bevy_drape::{
     build,
     solver::{
-        Anchor, ColliderShape, Effort, Material, Method, Obstacle, Particles, SpringConstants, StepContext, Tethers,
-        Topology,
+        Anchor, ColliderShape, Effort, Material, Method, Obstacle, Particles, SpringConstants, SpringKind, StepContext,
+        Tethers, Topology,
     },
 };
 
@@ -122,10 +122,10 @@ fn free_cloth(options: &Options, mesh: &MeshSource) -> io::Result<(Scene, Top)> 
     let begun = Instant::now();
     let topology = build::topology_of(&sheet.mesh, Mat3A::IDENTITY).map_err(|error| unusable(error.to_string()))?;
     let build_ms = begun.elapsed().as_secs_f64() * 1e3;
-    let spring = |stiffness| SpringConstants { stiffness, damping: 0.0 };
+    let spring = |kind: SpringKind| SpringConstants { stiffness: options.stiffness[kind.index()], damping: 0.0 };
     let material = Material {
         density: DENSITY,
-        springs: [spring(5000.0), spring(500.0), spring(20.0)],
+        springs: SpringKind::ALL.map(spring),
         damping: options.damping,
         thickness: 0.0,
         friction: 0.5,

@@ -42,6 +42,8 @@ fn series(lines: &[&Line]) -> Vec<Series> {
         // What blew up has no place on a logarithmic axis, nor has cloth that doesn't stretch at all.
         let Some(strain) = line.max_strain.filter(|strain| line.finite && *strain > 0.0) else { continue };
         let variant = line.setting.split_once(", ").map_or("", |(_, variant)| variant);
+        // Whatever the levels are, they make one series.
+        let variant = variant.find(" levels ").map_or(variant, |end| &variant[..end + 7]);
         let point = (line.us_per_frame_median / 1e3, f64::from(strain) * 100.0);
         points.entry((&line.system, variant)).or_default().push(point);
     }
@@ -83,7 +85,7 @@ fn draw<B: DrawingBackend>(
         .x_label_formatter(&|x| (*x as f32).to_string())
         .y_label_formatter(&|y| (*y as f32).to_string())
         .label_style(("sans-serif", 14))
-        .light_line_style(BLACK.mix(0.05))
+        .light_line_style(TRANSPARENT)
         .draw()?;
     for Series { name, colour, variant, points } in series {
         let (colour, variant) = (*colour, *variant);

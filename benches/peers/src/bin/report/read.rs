@@ -26,7 +26,7 @@ fn yes() -> bool {
 
 impl From<LabLine> for Line {
     fn from(lab: LabLine) -> Self {
-        let levels = lab.levels.filter(|levels| levels != "none").map(|levels| format!(", levels {levels}"));
+        let levels = lab.levels.filter(|levels| levels != "none").map(|levels| format!(" and levels {levels}"));
         Self {
             system: "bevy_drape".into(),
             version: String::new(),
@@ -39,6 +39,14 @@ impl From<LabLine> for Line {
             mean_height_at_quarter_second: None,
         }
     }
+}
+
+/// All lines of `text`.
+pub fn values(text: &str) -> Result<Vec<Value>, String> {
+    let filled = text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty());
+    filled
+        .map(|(number, text)| serde_json::from_str(text).map_err(|error| format!("line {}: {error}", number + 1)))
+        .collect()
 }
 
 /// The runs of `hang` in `text`: a line with a `system` is a peer's, one with a `scene` the lab's. The lab's other
@@ -93,7 +101,7 @@ mod tests {
         assert_eq!(lines[0].max_strain, None);
         assert_eq!(
             (lines[1].system.as_str(), lines[1].setting.as_str()),
-            ("bevy_drape", "8 substeps, strands, levels 8x8,4x4")
+            ("bevy_drape", "8 substeps, strands and levels 8x8,4x4")
         );
         assert!(lines[1].finite);
     }

@@ -30,11 +30,12 @@ fn row(line: &Line) -> String {
 }
 
 /// A percentage with two digits that say something, and no more decimals than that.
-fn percent(strain: f32) -> String {
+pub fn percent(strain: f32) -> String {
     match 100.0 * strain {
         percent if percent.abs() >= 1e6 => format!("{percent:.0e} %"),
         percent if percent.abs() >= 10.0 => format!("{percent:.0} %"),
         percent if percent.abs() >= 1.0 => format!("{percent:.1} %"),
+        percent if percent.abs() >= 0.1 => format!("{percent:.2} %"),
         percent => format!("{percent:.3} %"),
     }
 }
