@@ -71,8 +71,13 @@ const CASES: [Case; 18] = [
         &[Limit(MAX, AtMost(0.016)), Limit(TIME, AtMost(4000.0))],
     ),
     case(
+        "256 x 256, as it is on two threads",
+        "hang --n 256 --substeps 4 --levels 32x8,16x8",
+        &[Limit(MAX, AtMost(0.016)), Limit(TIME, AtMost(4000.0))],
+    ),
+    case(
         "256 x 256 on two threads, share of what two cloths gain",
-        "threads --n 256 --substeps 3 --levels 32x8,16x8,8x8 --threads 2 --frames 150",
+        "threads --n 256 --substeps 4 --levels 32x8,16x8 --threads 2 --frames 150",
         &[Limit("share", AtLeast(0.85))],
     ),
     case(
