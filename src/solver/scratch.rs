@@ -35,6 +35,8 @@ pub struct Scratch {
     pub(super) spool: Spool,
     /// The coarse levels.
     pub(super) levels: Levels,
+    /// Ways of a level's rows, spread over eight columns of the cloth.
+    pub(super) across: Points,
     /// The pins that hold tethers.
     pub(super) pins: PinPlaces,
     /// What each thread needs of its own in a large cloth.

@@ -20,7 +20,7 @@ use super::{
     },
     crew::{self, Phase},
     integrate::{self, Finish, Motion},
-    lanes::Run,
+    lanes::{Points, Run},
     order::{Band, Order},
 };
 
@@ -47,6 +47,7 @@ pub(super) struct Work<'a> {
 pub(super) struct Bench {
     loom: Loom,
     seam: Seam,
+    across: Points,
 }
 
 /// Moves the cloth along with its levels, solves tethers and springs, and finishes the substep.
@@ -59,7 +60,7 @@ pub(super) fn solve(pool: &TaskPool, lanes: &mut Lanes, benches: &mut Vec<Bench>
         runs: lanes.bands().into_iter().map(Mutex::new).collect(),
         benches: benches.iter_mut().map(Mutex::new).collect(),
     };
-    let begin = |band, _| cloth.begin(band);
+    let begin = |band, worker| cloth.begin(band, worker);
     let cross = |band, worker| cloth.cross(band, worker);
     let columns = |pair, worker| cloth.solve_columns(pair, worker);
     let rows = |band, worker| cloth.solve_rows(band, worker);
@@ -136,12 +137,12 @@ struct Cloth<'a> {
 
 impl Cloth<'_> {
     /// Levels, tethers, and the diagonals below even rows.
-    fn begin(&self, number: usize) {
+    fn begin(&self, number: usize, worker: usize) {
         let Work { weave: Weave { lattice, instructions, .. }, shear, levels, tethers, pins, slack, .. } = *self.work;
         let (band, mut run) = (self.bands[number], lock(&self.runs[number]));
         let Run { first, position, previous, inverse_mass, .. } = &mut *run;
         if let Some((run, levels)) = levels {
-            levels.move_band(run, position, inverse_mass, band);
+            levels.move_band(run, band, position, inverse_mass, &mut lock(&self.benches[worker]).across);
         }
         tether::solve(position, inverse_mass, *first, tethers, pins, slack, instructions);
         let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };

@@ -50,7 +50,7 @@ pub(in crate::solver) struct Nodes {
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Levels {
     nodes: Vec<Nodes>,
-    /// Ways of a level's rows, spread over finer columns.
+    /// Ways of a level's rows, spread over eight finer columns.
     across: Points,
 }
 
@@ -97,11 +97,10 @@ impl Levels {
         for ((i, level), nodes) in run.used().zip(&run.levels[run.used()]).zip(&mut nodes[run.used()]) {
             nodes.restrict(level, lanes);
             if let (Some(coarser), Some(spread)) = (coarser, &level.from_coarser) {
-                coarser.spread_across(spread, across, run.instructions);
                 let Nodes { order, position, inverse_mass, .. } = nodes;
                 for band in order.bands() {
                     let (position, inverse_mass) = (&mut position.0[band.blocks()], &inverse_mass[band.blocks()]);
-                    coarser.spread_down(position, inverse_mass, spread, across, band, run.instructions);
+                    coarser.prolong(spread, band, position, inverse_mass, across, run.instructions);
                 }
             }
             let tethers = run.tethers.of_level(i);
@@ -112,24 +111,25 @@ impl Levels {
             coarser = Some(nodes);
         }
         let finest = run.levels[run.used()].last().map(|level| &level.transfer);
-        match (coarser, finest) {
-            (Some(nodes), Some(Transfer::Lattice { spread, .. })) => {
-                nodes.spread_across(spread, across, run.instructions);
-            }
-            (Some(nodes), Some(Transfer::Chart { particles, .. })) => {
-                let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
-                let set = run.instructions.level();
-                dispatch!(set, simd => nodes.prolong_chart(simd, particles, position, inverse_mass));
-            }
-            _ => {}
+        if let (Some(nodes), Some(Transfer::Chart { particles, .. })) = (coarser, finest) {
+            let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
+            let set = run.instructions.level();
+            dispatch!(set, simd => nodes.prolong_chart(simd, particles, position, inverse_mass));
         }
     }
 
-    /// Moves a band of a lattice along with the finest level.
-    pub fn move_band(&self, run: &LevelRun, position: &mut [Block], inverse_mass: &[Lane], band: Band) {
+    /// Moves a band of a lattice along with the finest level. `across` is a buffer.
+    pub fn move_band(
+        &self,
+        run: &LevelRun,
+        band: Band,
+        position: &mut [Block],
+        inverse_mass: &[Lane],
+        across: &mut Points,
+    ) {
         let Some(finest) = run.used().last() else { return };
         if let Transfer::Lattice { spread, .. } = &run.levels[finest].transfer {
-            self.nodes[finest].spread_down(position, inverse_mass, spread, &self.across, band, run.instructions);
+            self.nodes[finest].prolong(spread, band, position, inverse_mass, across, run.instructions);
         }
     }
 }
@@ -205,40 +205,54 @@ impl Nodes {
         }
     }
 
-    /// Works out how far rows of nodes take finer columns.
-    fn spread_across(&self, spread: &Spread, across: &mut Points, instructions: Instructions) {
-        across.resize(spread.columns.len() * self.order.rows);
-        dispatch!(instructions.level(), simd => self.spread_eights_across(simd, spread, across));
-    }
-
-    #[inline(always)]
-    fn spread_eights_across<S: Simd>(&self, simd: S, spread: &Spread, across: &mut Points) {
-        for (nodes, across) in spread.columns.iter().zip(across.0.chunks_exact_mut(self.order.rows)) {
-            for (row, across) in across.iter_mut().enumerate() {
-                let mut way = Vec3x8::splat(simd, [0.0; 3]);
-                for (column, shares) in nodes {
-                    let node = self.way.get(self.order.slot_at(row, *column as usize)).to_array();
-                    way = way + Vec3x8::splat(simd, node) * lane(simd, shares);
-                }
-                way.store(across);
-            }
-        }
-    }
-
-    /// Moves what is free in a finer band along with the rows of nodes that it lies between.
-    fn spread_down(
+    /// Moves what is free in a finer band along with the nodes that it lies between.
+    fn prolong(
         &self,
+        spread: &Spread,
+        band: Band,
         position: &mut [Block],
         inverse_mass: &[Lane],
-        spread: &Spread,
-        across: &Points,
-        band: Band,
+        across: &mut Points,
         instructions: Instructions,
     ) {
-        let (rows, node_rows) = (&spread.rows[band.first..][..band.rows], self.order.rows);
+        across.resize(self.order.rows);
+        let rows = &spread.rows[band.first..][..band.rows];
+        let columns = position.chunks_exact_mut(band.rows).zip(inverse_mass.chunks_exact(band.rows));
+        let columns = columns.zip(&spread.columns);
         dispatch!(instructions.level(), simd => {
-            spread_eights_down(simd, position, inverse_mass, rows, &across.0, node_rows);
+            for ((places, masses), nodes) in columns {
+                self.prolong_eight(simd, rows, nodes, places, masses, &mut across.0);
+            }
         });
+    }
+
+    /// Moves what is free in eight columns: first the ways of the rows of nodes around are spread `across` the columns,
+    /// then between those.
+    #[inline(always)]
+    fn prolong_eight<S: Simd>(
+        &self,
+        simd: S,
+        rows: &[Between],
+        nodes: &[(u32, Lane)],
+        places: &mut [Block],
+        masses: &[Lane],
+        across: &mut [Block],
+    ) {
+        let first = rows.first().map_or(0, |row| row.first as usize);
+        let after = rows.last().map_or(0, |row| row.first as usize + 2);
+        for (row, across) in across.iter_mut().enumerate().take(after).skip(first) {
+            let mut way = Vec3x8::splat(simd, [0.0; 3]);
+            for (column, shares) in nodes {
+                let node = self.way.get(self.order.slot_at(row, *column as usize)).to_array();
+                way = way + Vec3x8::splat(simd, node) * lane(simd, shares);
+            }
+            way.store(across);
+        }
+        for ((place, w), &Between { first, share }) in places.iter_mut().zip(masses).zip(rows) {
+            let above = Vec3x8::load(simd, &across[first as usize]);
+            let below = Vec3x8::load(simd, &across[first as usize + 1]);
+            move_free(simd, place, w, above + (below - above) * f32x8::splat(simd, share));
+        }
     }
 
     #[inline(always)]
@@ -260,26 +274,6 @@ impl Nodes {
                 (way[0][lane], way[1][lane], way[2][lane]) = sum.into();
             }
             move_free(simd, place, w, Vec3x8::load(simd, &way));
-        }
-    }
-}
-
-/// Moves particles in some `rows` along with what rows of nodes do `across`.
-#[inline(always)]
-fn spread_eights_down<S: Simd>(
-    simd: S,
-    position: &mut [Block],
-    inverse_mass: &[Lane],
-    rows: &[Between],
-    across: &[Block],
-    node_rows: usize,
-) {
-    let places = position.chunks_exact_mut(rows.len()).zip(inverse_mass.chunks_exact(rows.len()));
-    for ((places, masses), across) in places.zip(across.chunks_exact(node_rows)) {
-        for ((place, w), &Between { first, share }) in places.iter_mut().zip(masses).zip(rows) {
-            let above = Vec3x8::load(simd, &across[first as usize]);
-            let below = Vec3x8::load(simd, &across[first as usize + 1]);
-            move_free(simd, place, w, above + (below - above) * f32x8::splat(simd, share));
         }
     }
 }

@@ -126,7 +126,7 @@ impl Substep<'_> {
         if let Some(run) = &run {
             for band in scratch.lanes.order.bands() {
                 let Run { position, inverse_mass, .. } = scratch.lanes.band(band);
-                scratch.levels.move_band(run, position, inverse_mass, band);
+                scratch.levels.move_band(run, band, position, inverse_mass, &mut scratch.across);
             }
         }
         self.solve_tethers(scratch);
