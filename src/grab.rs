@@ -14,6 +14,7 @@ use crate::{
 mod point;
 
 pub use point::ClothPoint;
+#[cfg(feature = "debug")]
 pub(crate) use point::blend;
 
 /// How firmly a hand holds a cloth. A value out of its range counts as the nearest one within.
