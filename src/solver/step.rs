@@ -28,8 +28,8 @@ const AIR_RATE: f32 = 160.0;
 /// constraints and projects the particles out of the obstacles. Small substeps with one iteration each follow
 /// Macklin et al., "Small Steps in Physics Simulation" (2019).
 ///
-/// Nothing is allocated once `scratch` has seen a cloth of this size. The same input gives the same bits. A time step
-/// that isn't positive does nothing.
+/// Nothing is allocated once `scratch` has seen a cloth of this size, but for what threads need that share one. The same
+/// input gives the same bits. A time step that isn't positive does nothing.
 pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, scratch: &mut Scratch) -> StepReport {
     let dt = ctx.dt.min(MAX_TIME_STEP);
     if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
@@ -41,20 +41,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     let with_care = is_near || !is_tethered || !ctx.grabs.is_empty();
     let (wanted, levels) = ctx.effort.of_step(with_care, dt);
     let helpers = helpers(topology, ctx);
-    let mut has_moved = false;
-    let is_pushed = match helpers {
-        Some((pool, _)) => {
-            let is_free = !wind::feels_air(ctx);
-            let free = is_free.then(|| Motion::free(ctx, dt / wanted as f32));
-            let is_pushed = share::load(pool, &mut scratch.lanes, particles, topology.order(), free, instructions);
-            has_moved = is_free && !is_pushed;
-            is_pushed
-        }
-        None => {
-            scratch.lanes.load(particles, topology.order(), instructions);
-            particles.is_pushed(0..particles.len())
-        }
-    };
+    let Loaded { is_pushed, mut has_moved } = load(particles, topology, ctx, dt / wanted as f32, helpers, scratch);
     grab::take_up(&mut scratch.lanes, ctx.grabs);
     let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
         Method::Strands => (u32::MAX, wanted, 1.0, levels),
@@ -66,7 +53,6 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
         }
     };
     let substeps = needed_substeps.min(most);
-    let is_pushed = wind::feels_air(ctx) || is_pushed;
     let last = Last::between(ctx.anchors, topology.order());
     let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
     let limit = SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most };
@@ -125,6 +111,34 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     }
     let steady_force = if is_pushed { scratch.steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
     StepReport { substeps, needed_substeps, stiffness_scale, contacts, steady_force }
+}
+
+/// What is found when a cloth is taken over.
+struct Loaded {
+    /// Whether anything but gravity acts.
+    is_pushed: bool,
+    /// Whether the free motion of the first substep is done.
+    has_moved: bool,
+}
+
+/// Takes over the state of a cloth. Threads that share it begin the first substep, of `h` seconds, where they can.
+fn load(
+    particles: &Particles,
+    topology: &Topology,
+    ctx: &StepContext,
+    h: f32,
+    helpers: Option<(&TaskPool, &Lattice)>,
+    scratch: &mut Scratch,
+) -> Loaded {
+    let Scratch { lanes, instructions, .. } = scratch;
+    let feels_air = wind::feels_air(ctx);
+    let Some((pool, lattice)) = helpers else {
+        lanes.load(particles, topology.order(), *instructions);
+        return Loaded { is_pushed: feels_air || particles.is_pushed(0..particles.len()), has_moved: false };
+    };
+    let free = (!feels_air).then(|| Motion::free(ctx, h));
+    let is_pushed = feels_air | share::load(pool, lanes, particles, lattice.order(), free, *instructions);
+    Loaded { is_pushed, has_moved: !is_pushed }
 }
 
 /// The threads that share the work, where it pays: all springs are on the lattice, and no hand holds it.
