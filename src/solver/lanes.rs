@@ -6,6 +6,7 @@ use fearless_simd::{dispatch, f32x4, f32x8, prelude::*};
 
 use super::{
     Particles,
+    constraint::weave::Sheet,
     order::{Band, Order},
     simd::{Instructions, LANES, Lane, lane},
 };
@@ -129,7 +130,7 @@ impl Lanes {
             points.resize(order.block_count());
         }
         self.inverse_mass.resize(order.block_count(), Lane::default());
-        self.row_masses.resize(order.bands().map(|band| band.row_masses().len()).sum(), Lane::default());
+        self.row_masses.resize(order.row_mass_count(), Lane::default());
     }
 
     /// Takes over the state of a cloth.
@@ -179,6 +180,12 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
+    /// What constraints of a lattice work on.
+    pub fn sheet(&mut self) -> Sheet<'_> {
+        let Self { position, previous, inverse_mass, row_masses, .. } = self;
+        Sheet { position, previous, inverse_mass, row_masses }
+    }
+
     /// Takes over the state of a band.
     pub fn load(&mut self, particles: &Particles, band: Band, instructions: Instructions) {
         let level = instructions.level();

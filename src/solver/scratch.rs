@@ -4,7 +4,7 @@ use bevy::math::Vec3A;
 
 use super::{
     Instructions, Lanes,
-    constraint::{braid::Spool, diagonal::Seam, level::Levels, spring::Beads, tether::PinPlaces, weave::Loom},
+    constraint::{level::Levels, spring::Beads, tether::PinPlaces},
     force::wind::Air,
     lanes::Points,
     share::Bench,
@@ -29,18 +29,12 @@ pub struct Scratch {
     pub(super) spring_sums: Vec<(f32, f32)>,
     /// The particles one by one.
     pub(super) beads: Beads,
-    /// Threads that are being solved.
-    pub(super) loom: Loom,
-    /// Threads of braids that are being solved.
-    pub(super) spool: Spool,
     /// The coarse levels.
     pub(super) levels: Levels,
-    /// Ways of a level's rows, spread over eight columns of the cloth.
-    pub(super) across: Points,
     /// The pins that hold tethers.
     pub(super) pins: PinPlaces,
-    /// What each thread needs of its own in a large cloth.
+    /// What this thread needs of its own.
+    pub(super) bench: Bench,
+    /// What each thread needs of its own that shares a large cloth.
     pub(super) benches: Vec<Bench>,
-    /// Rows between bands.
-    pub(super) seam: Seam,
 }

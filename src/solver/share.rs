@@ -16,7 +16,7 @@ use super::{
         spring::Scaled,
         strand::Both,
         tether::{self, PinPlaces, TetherBlock},
-        weave::{self, Last, Loom, Sheet, Weave},
+        weave::{self, Last, Loom, Weaver},
     },
     crew::{self, Phase},
     integrate::{self, Finish, Motion},
@@ -30,7 +30,7 @@ pub(super) const LARGE: usize = 10_000;
 /// What the threads need to know of a substep.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Work<'a> {
-    pub weave: Weave<'a>,
+    pub weaver: Weaver<'a>,
     pub shear: Scaled,
     pub last: Last,
     /// Levels that are solved already, if there are any.
@@ -45,9 +45,12 @@ pub(super) struct Work<'a> {
 /// Buffers of one thread.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bench {
-    loom: Loom,
-    seam: Seam,
-    across: Points,
+    /// Threads that are being solved.
+    pub loom: Loom,
+    /// Rows between bands.
+    pub seam: Seam,
+    /// Ways of a level's rows, spread over eight columns.
+    pub across: Points,
 }
 
 /// Moves the cloth along with its levels, solves tethers and springs, and finishes the substep.
@@ -138,32 +141,25 @@ struct Cloth<'a> {
 impl Cloth<'_> {
     /// Levels, tethers, and the diagonals below even rows.
     fn begin(&self, number: usize, worker: usize) {
-        let Work { weave: Weave { lattice, instructions, .. }, shear, levels, tethers, pins, slack, .. } = *self.work;
+        let Work { weaver: Weaver { lattice, instructions, .. }, shear, levels, tethers, pins, slack, .. } = *self.work;
         let (band, mut run) = (self.bands[number], lock(&self.runs[number]));
-        let Run { first, position, previous, inverse_mass, .. } = &mut *run;
+        let Run { first, position, inverse_mass, .. } = &mut *run;
         if let Some((run, levels)) = levels {
             levels.move_band(run, band, position, inverse_mass, &mut lock(&self.benches[worker]).across);
         }
         tether::solve(position, inverse_mass, *first, tethers, pins, slack, instructions);
-        let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
-        diagonal::solve_band(&mut sheet, band, 0, lattice, shear, instructions);
+        diagonal::solve_band(&mut run.sheet(), band, 0, lattice, shear, instructions);
     }
 
     /// The diagonals below odd rows, and those to the band above: they have no particle in common.
     fn cross(&self, number: usize, worker: usize) {
-        let Work { weave: Weave { lattice, instructions, .. }, shear, .. } = *self.work;
+        let Work { weaver: Weaver { lattice, instructions, .. }, shear, .. } = *self.work;
         let band = self.bands[number];
-        {
-            let mut run = lock(&self.runs[number]);
-            let Run { position, previous, inverse_mass, .. } = &mut *run;
-            let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
-            diagonal::solve_band(&mut sheet, band, 1, lattice, shear, instructions);
-        }
+        diagonal::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, shear, instructions);
         let Some(above) = number.checked_sub(1) else { return };
         let seam = &mut lock(&self.benches[worker]).seam;
         for (row, band) in [above, number].into_iter().enumerate() {
-            let run = lock(&self.runs[band]);
-            seam.take(run.position, run.previous, run.inverse_mass, self.bands[band], row);
+            seam.take(&lock(&self.runs[band]).sheet(), self.bands[band], row);
         }
         seam.solve(band, lattice, shear, instructions);
         for (row, band) in [above, number].into_iter().enumerate() {
@@ -173,29 +169,26 @@ impl Cloth<'_> {
 
     /// Two packs of columns.
     fn solve_columns(&self, pair: usize, worker: usize) {
-        let (weave, first) = (&self.work.weave, 2 * pair);
+        let (weaver, first) = (&self.work.weaver, 2 * pair);
         let loom = &mut lock(&self.benches[worker]).loom;
         for (&band, run) in self.bands.iter().zip(&self.runs) {
-            let run = lock(run);
-            weave.take_columns(run.position, run.previous, run.inverse_mass, band, first, loom);
+            weaver.take_columns(&lock(run).sheet(), band, first, loom);
         }
-        weave.solve_taken_columns::<Both>(first, loom);
+        weaver.solve_taken_columns::<Both>(first, loom);
         for (&band, run) in self.bands.iter().zip(&self.runs) {
-            weave.put_columns(loom, lock(run).position, band, first);
+            weaver.put_columns(loom, lock(run).position, band, first);
         }
     }
 
     fn solve_rows(&self, number: usize, worker: usize) {
-        let weave = &self.work.weave;
         let loom = &mut lock(&self.benches[worker]).loom;
-        let mut run = lock(&self.runs[number]);
-        let Run { position, previous, row_masses, .. } = &mut *run;
-        weave.solve_rows::<Both>(position, previous, row_masses, self.bands[number], loom);
+        let part = &mut lock(&self.runs[number]);
+        self.work.weaver.solve_rows::<Both>(&mut part.sheet(), self.bands[number], loom);
     }
 
     fn finish(&self, number: usize) {
         if let Some(finish) = self.work.finish {
-            integrate::finish(&mut lock(&self.runs[number]), finish, self.work.weave.instructions);
+            integrate::finish(&mut lock(&self.runs[number]), finish, self.work.weaver.instructions);
         }
     }
 }

@@ -4,51 +4,31 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
     spring::Beads,
-    strand::{Both, Pack, Rows},
-    weave::Yarn,
+    strand::{Both, Pack},
+    weave::{Loom, Yarn},
 };
 use crate::solver::{
     Braid,
-    lanes::Block,
-    simd::{Instructions, Lane, Vec3x8, lane},
+    simd::{Instructions, Vec3x8, lane},
 };
-
-/// Buffers for the threads that are being solved.
-#[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Spool {
-    rows: Rows,
-    position: Vec<Block>,
-    previous: Vec<Block>,
-    inverse_mass: Vec<Lane>,
-}
-
-impl Spool {
-    fn fit(&mut self, nodes: usize) {
-        let nodes = nodes.max(self.position.len());
-        self.rows.make_room(nodes);
-        self.position.resize(nodes, Block::default());
-        self.previous.resize(nodes, Block::default());
-        self.inverse_mass.resize(nodes, Lane::default());
-    }
-}
 
 /// The braids that are to be solved in a substep.
 pub(in crate::solver) struct Strung<'a> {
     pub braids: &'a [Braid],
     pub yarn: Yarn,
-    pub spool: &'a mut Spool,
+    pub loom: &'a mut Loom,
 }
 
 impl Strung<'_> {
     /// Solves them one after the other.
     pub fn solve(self, beads: &mut Beads, instructions: Instructions) {
-        let Self { braids, yarn, spool } = self;
-        spool.fit(braids.iter().map(|braid| braid.nodes.len()).max().unwrap_or(0));
+        let Self { braids, yarn, loom } = self;
+        loom.make_room(braids.iter().map(|braid| braid.nodes.len()).max().unwrap_or(0));
         let level = instructions.level();
         if yarn.is_damped() {
-            dispatch!(level, simd => solve_braids::<_, true>(simd, beads, braids, yarn, spool));
+            dispatch!(level, simd => solve_braids::<_, true>(simd, beads, braids, yarn, loom));
         } else {
-            dispatch!(level, simd => solve_braids::<_, false>(simd, beads, braids, yarn, spool));
+            dispatch!(level, simd => solve_braids::<_, false>(simd, beads, braids, yarn, loom));
         }
     }
 }
@@ -59,7 +39,7 @@ fn solve_braids<S: Simd, const DAMPED: bool>(
     beads: &mut Beads,
     braids: &[Braid],
     yarn: Yarn,
-    Spool { rows, position, previous, inverse_mass }: &mut Spool,
+    Loom { rows, position, previous, inverse_mass }: &mut Loom,
 ) {
     for Braid { nodes, stretch, bend, closed } in braids {
         for (j, particles) in nodes.iter().enumerate() {

@@ -34,21 +34,16 @@ pub(in crate::solver) fn solve(
     let bands = lattice.order().bands();
     for parity in [0, 1] {
         for band in bands.clone() {
-            let blocks = band.blocks();
-            let (position, previous) = (&mut sheet.position[blocks.clone()], &sheet.previous[blocks.clone()]);
-            let mut part = Sheet { position, previous, inverse_mass: &sheet.inverse_mass[blocks], row_masses: &[] };
-            solve_band(&mut part, band, parity, lattice, constants, instructions);
+            solve_band(&mut sheet.band(band), band, parity, lattice, constants, instructions);
         }
     }
     for (upper, lower) in bands.clone().zip(bands.skip(1)) {
         for (band, row) in [(upper, 0), (lower, 1)] {
-            let blocks = band.blocks();
-            let [position, previous] = [&sheet.position[blocks.clone()], &sheet.previous[blocks.clone()]];
-            seam.take(position, previous, &sheet.inverse_mass[blocks], band, row);
+            seam.take(&sheet.band(band), band, row);
         }
         seam.solve(lower, lattice, constants, instructions);
         for (band, row) in [(upper, 0), (lower, 1)] {
-            seam.put(&mut sheet.position[band.blocks()], band, row);
+            seam.put(sheet.band(band).position, band, row);
         }
     }
 }
@@ -62,13 +57,25 @@ pub(in crate::solver) fn solve_band(
     constants: Scaled,
     instructions: Instructions,
 ) {
+    solve_pairs(sheet, band.rows, band.first, parity, lattice, constants, instructions);
+}
+
+/// The same in a sheet of so many `rows`, whose `first` is its number in the lattice.
+fn solve_pairs(
+    sheet: &mut Sheet,
+    rows: usize,
+    first: usize,
+    parity: usize,
+    lattice: &Lattice,
+    constants: Scaled,
+    instructions: Instructions,
+) {
     let level = instructions.level();
-    let (rows, first) = (band.rows, band.first);
-    let pairs = (parity..rows - 1).step_by(2);
+    let some = (parity..rows - 1).step_by(2);
     if constants.c > 0.0 {
-        dispatch!(level, simd => solve_pairs::<_, true>(simd, sheet, rows, first, pairs, lattice, constants));
+        dispatch!(level, simd => solve_eights::<_, true>(simd, sheet, rows, first, some, lattice, constants));
     } else if constants.k > 0.0 {
-        dispatch!(level, simd => solve_pairs::<_, false>(simd, sheet, rows, first, pairs, lattice, constants));
+        dispatch!(level, simd => solve_eights::<_, false>(simd, sheet, rows, first, some, lattice, constants));
     }
 }
 
@@ -82,17 +89,17 @@ pub(in crate::solver) struct Seam {
 
 impl Seam {
     /// Takes the last row of the band above, which is the seam's row 0, or the first row of the band below, its row 1.
-    pub fn take(&mut self, position: &[Block], previous: &[Block], inverse_mass: &[Lane], band: Band, row: usize) {
-        let packs = position.len() / band.rows;
+    pub fn take(&mut self, part: &Sheet, band: Band, row: usize) {
+        let packs = part.position.len() / band.rows;
         for blocks in [&mut self.position, &mut self.previous] {
             blocks.resize(2 * packs, Block::default());
         }
         self.inverse_mass.resize(2 * packs, Lane::default());
         for pack in 0..packs {
             let (from, to) = (Self::block(band, row, pack), 2 * pack + row);
-            self.position[to] = position[from];
-            self.previous[to] = previous[from];
-            self.inverse_mass[to] = inverse_mass[from];
+            self.position[to] = part.position[from];
+            self.previous[to] = part.previous[from];
+            self.inverse_mass[to] = part.inverse_mass[from];
         }
     }
 
@@ -100,12 +107,7 @@ impl Seam {
     pub fn solve(&mut self, below: Band, lattice: &Lattice, constants: Scaled, instructions: Instructions) {
         let Self { position, previous, inverse_mass } = self;
         let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
-        let (level, first) = (instructions.level(), below.first - 1);
-        if constants.c > 0.0 {
-            dispatch!(level, simd => solve_pairs::<_, true>(simd, &mut sheet, 2, first, 0..1, lattice, constants));
-        } else if constants.k > 0.0 {
-            dispatch!(level, simd => solve_pairs::<_, false>(simd, &mut sheet, 2, first, 0..1, lattice, constants));
-        }
+        solve_pairs(&mut sheet, 2, below.first - 1, 0, lattice, constants, instructions);
     }
 
     /// Puts a row back.
@@ -120,9 +122,8 @@ impl Seam {
     }
 }
 
-/// Solves the diagonals below some rows of a sheet of so many `rows`, whose `first` is its number in the lattice.
 #[inline(always)]
-fn solve_pairs<S: Simd, const DAMPED: bool>(
+fn solve_eights<S: Simd, const DAMPED: bool>(
     simd: S,
     sheet: &mut Sheet,
     rows: usize,

@@ -22,13 +22,14 @@ use super::{
     spring::Scaled,
     strand::Pull,
     tether::{self, PinPlaces, TetherBlock},
-    weave::{self, Last, Loom, Sheet, Weave, Yarn},
+    weave::{self, Last, Loom, Sheet, Weaver, Yarn},
 };
 use crate::solver::{
     Lanes, Level, LevelPass, Tethers,
     lanes::{Block, Points},
     level::{Between, Spread, Transfer},
     order::{Band, Order},
+    share::Bench,
     simd::{Instructions, LANES, Lane, Vec3x8, lane},
 };
 
@@ -50,8 +51,6 @@ pub(in crate::solver) struct Nodes {
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Levels {
     nodes: Vec<Nodes>,
-    /// Ways of a level's rows, spread over eight finer columns.
-    across: Points,
 }
 
 /// What the levels need to know of a substep.
@@ -91,8 +90,14 @@ impl Levels {
 
     /// Solves all levels, once a substep. Particles of a lattice are moved along with them by [`move_band`](Self::move_band),
     /// others at once.
-    pub fn solve(&mut self, run: &LevelRun, lanes: &mut Lanes, pins: &PinPlaces, loom: &mut Loom) {
-        let Self { nodes, across } = self;
+    pub fn solve(
+        &mut self,
+        run: &LevelRun,
+        lanes: &mut Lanes,
+        pins: &PinPlaces,
+        Bench { loom, across, .. }: &mut Bench,
+    ) {
+        let nodes = &mut self.nodes;
         let mut coarser: Option<&Nodes> = None;
         for ((i, level), nodes) in run.used().zip(&run.levels[run.used()]).zip(&mut nodes[run.used()]) {
             nodes.restrict(level, lanes);
@@ -158,7 +163,7 @@ impl Nodes {
                 }
             }
         }
-        self.row_masses.resize(self.order.bands().map(|band| band.row_masses().len()).sum(), Lane::default());
+        self.row_masses.resize(self.order.row_mass_count(), Lane::default());
         for band in self.order.bands() {
             let inverse_mass = &self.inverse_mass[band.blocks()];
             weave::masses_along_rows(inverse_mass, band, &mut self.row_masses[band.row_masses()], instructions);
@@ -192,8 +197,8 @@ impl Nodes {
             Sheet { position, previous: &self.way.0, inverse_mass: &self.inverse_mass, row_masses: &self.row_masses };
         let yarn =
             Yarn { stretch: Scaled { c: 0.0, ..run.stretch }, bend: None, give: 1.0 + (run.slack - TAUTER).max(0.0) };
-        let weave = Weave { lattice: &level.lattice, yarn, instructions: run.instructions };
-        weave.solve::<Pull>(&mut sheet, run.last, loom);
+        let weaver = Weaver { lattice: &level.lattice, yarn, instructions: run.instructions };
+        weaver.solve::<Pull>(&mut sheet, run.last, loom);
     }
 
     /// Works out how far the nodes went.

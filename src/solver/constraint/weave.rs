@@ -29,18 +29,31 @@ pub(in crate::solver) struct Sheet<'a> {
     pub row_masses: &'a [Lane],
 }
 
+impl Sheet<'_> {
+    /// What is in a band of the whole lattice.
+    pub fn band(&mut self, band: Band) -> Sheet<'_> {
+        let blocks = band.blocks();
+        Sheet {
+            position: &mut self.position[blocks.clone()],
+            previous: &self.previous[blocks.clone()],
+            inverse_mass: &self.inverse_mass[blocks],
+            row_masses: &self.row_masses[band.row_masses()],
+        }
+    }
+}
+
 /// Buffers for threads that are being solved.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Loom {
-    rows: Rows,
-    position: Vec<Block>,
-    previous: Vec<Block>,
-    inverse_mass: Vec<Lane>,
+    pub rows: Rows,
+    pub position: Vec<Block>,
+    pub previous: Vec<Block>,
+    pub inverse_mass: Vec<Lane>,
 }
 
 impl Loom {
     /// Makes room for as many nodes.
-    fn make_room(&mut self, count: usize) {
+    pub fn make_room(&mut self, count: usize) {
         self.rows.make_room(count);
         for blocks in [&mut self.position, &mut self.previous] {
             blocks.resize(blocks.len().max(count), Block::default());
@@ -116,13 +129,13 @@ impl Last {
 
 /// How the threads of a lattice are solved.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Weave<'a> {
+pub(in crate::solver) struct Weaver<'a> {
     pub lattice: &'a Lattice,
     pub yarn: Yarn,
     pub instructions: Instructions,
 }
 
-impl Weave<'_> {
+impl Weaver<'_> {
     /// Solves all columns and all rows.
     pub fn solve<D: Side>(&self, sheet: &mut Sheet, last: Last, loom: &mut Loom) {
         for threads in last.order() {
@@ -130,9 +143,7 @@ impl Weave<'_> {
                 Last::Columns => self.solve_columns::<D>(sheet, loom),
                 Last::Rows => {
                     for band in self.lattice.order().bands() {
-                        let (position, previous) = (&mut sheet.position[band.blocks()], &sheet.previous[band.blocks()]);
-                        let row_masses = &sheet.row_masses[band.row_masses()];
-                        self.solve_rows::<D>(position, previous, row_masses, band, loom);
+                        self.solve_rows::<D>(&mut sheet.band(band), band, loom);
                     }
                 }
             }
@@ -144,13 +155,11 @@ impl Weave<'_> {
         if order.bands().len() > 1 {
             for first in (0..order.pack_count()).step_by(2) {
                 for band in order.bands() {
-                    let blocks = band.blocks();
-                    let [position, previous] = [&sheet.position[blocks.clone()], &sheet.previous[blocks.clone()]];
-                    self.take_columns(position, previous, &sheet.inverse_mass[blocks], band, first, loom);
+                    self.take_columns(&sheet.band(band), band, first, loom);
                 }
                 self.solve_taken_columns::<D>(first, loom);
                 for band in order.bands() {
-                    self.put_columns(loom, &mut sheet.position[band.blocks()], band, first);
+                    self.put_columns(loom, sheet.band(band).position, band, first);
                 }
             }
             return;
@@ -169,22 +178,14 @@ impl Weave<'_> {
     }
 
     /// Takes a band's part of up to two packs of columns from the `first` on to the loom.
-    pub fn take_columns(
-        &self,
-        position: &[Block],
-        previous: &[Block],
-        inverse_mass: &[Lane],
-        band: Band,
-        first: usize,
-        loom: &mut Loom,
-    ) {
+    pub fn take_columns(&self, part: &Sheet, band: Band, first: usize, loom: &mut Loom) {
         let stride = self.lattice.rows;
         loom.make_room(2 * stride);
         let packs = self.packs(first);
-        take(position, band, stride, packs.clone(), &mut loom.position);
-        take(inverse_mass, band, stride, packs.clone(), &mut loom.inverse_mass);
+        take(part.position, band, stride, packs.clone(), &mut loom.position);
+        take(part.inverse_mass, band, stride, packs.clone(), &mut loom.inverse_mass);
         if self.yarn.is_damped() {
-            take(previous, band, stride, packs, &mut loom.previous);
+            take(part.previous, band, stride, packs, &mut loom.previous);
         }
     }
 
@@ -211,17 +212,11 @@ impl Weave<'_> {
     }
 
     /// Solves the rows of a band.
-    pub fn solve_rows<D: Side>(
-        &self,
-        position: &mut [Block],
-        previous: &[Block],
-        row_masses: &[Lane],
-        band: Band,
-        loom: &mut Loom,
-    ) {
+    pub fn solve_rows<D: Side>(&self, part: &mut Sheet, band: Band, loom: &mut Loom) {
         let (level, threads) = (self.instructions.level(), &self.lattice.along_rows);
         let nodes = threads.nodes;
         loom.make_room(2 * nodes);
+        let Sheet { position, previous, row_masses, .. } = part;
         for first in (0..band.rows).step_by(2 * LANES) {
             let some = first..band.rows.min(first + 2 * LANES);
             dispatch!(level, simd => take_rows(simd, position, band.rows, some.clone(), nodes, &mut loom.position));

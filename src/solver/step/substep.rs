@@ -11,13 +11,13 @@ use crate::solver::{
         spring::{self, Scaled},
         strand::Both,
         tether,
-        weave::{self, Last, Sheet, Weave, Yarn},
+        weave::{self, Last, Weaver, Yarn},
     },
     explicit,
     force::wind,
     integrate::{self, Finish, Motion, SpeedLimit},
     lanes::{Points, Run},
-    share::{self, Work},
+    share::{self, Bench, Work},
     topology::SpringKind,
 };
 
@@ -101,8 +101,8 @@ impl Substep<'_> {
     pub fn solve_strands(&self, scratch: &mut Scratch, goes_on: bool) -> bool {
         let run = self.levels(scratch);
         if let Some(run) = &run {
-            let Scratch { lanes, loom, pins, levels, .. } = scratch;
-            levels.solve(run, lanes, pins, loom);
+            let Scratch { lanes, bench, pins, levels, .. } = scratch;
+            levels.solve(run, lanes, pins, bench);
         }
         let scaled = |kind| Scaled::new(self.ctx.material.spring(kind), self.h);
         let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
@@ -111,7 +111,7 @@ impl Substep<'_> {
             let Scratch { lanes, pins, levels, benches, applied_force, instructions, .. } = scratch;
             let finish = (!self.is_near).then(|| self.finish(applied_force, goes_on));
             let work = Work {
-                weave: Weave { lattice, yarn, instructions: *instructions },
+                weaver: Weaver { lattice, yarn, instructions: *instructions },
                 shear: scaled(SpringKind::Shear),
                 last: self.last,
                 levels: run.as_ref().map(|run| (run, &*levels)),
@@ -126,25 +126,21 @@ impl Substep<'_> {
         if let Some(run) = &run {
             for band in scratch.lanes.order.bands() {
                 let Run { position, inverse_mass, .. } = scratch.lanes.band(band);
-                scratch.levels.move_band(run, band, position, inverse_mass, &mut scratch.across);
+                scratch.levels.move_band(run, band, position, inverse_mass, &mut scratch.bench.across);
             }
         }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, loom, spool, seam, instructions, .. } = scratch;
+        let Scratch { lanes, beads, bench: Bench { loom, seam, .. }, instructions, .. } = scratch;
         let (material, h) = (&self.ctx.material, self.h);
         let loose = self.topology.batches.iter().filter(|batch| !batch.woven);
         let braids = &self.topology.braids;
-        let strung = (!braids.is_empty()).then_some(Strung { braids, yarn, spool });
+        let strung = (!braids.is_empty()).then_some(Strung { braids, yarn, loom: &mut *loom });
         spring::solve(lanes, self.topology, loose, material, h, beads, strung, *instructions);
         if let Some(lattice) = &self.topology.lattice {
-            let mut sheet = Sheet {
-                position: &mut lanes.position.0,
-                previous: &lanes.previous.0,
-                inverse_mass: &lanes.inverse_mass,
-                row_masses: &lanes.row_masses,
-            };
+            let mut run = lanes.whole();
+            let mut sheet = run.sheet();
             diagonal::solve(&mut sheet, lattice, scaled(SpringKind::Shear), seam, *instructions);
-            Weave { lattice, yarn, instructions: *instructions }.solve::<Both>(&mut sheet, self.last, loom);
+            Weaver { lattice, yarn, instructions: *instructions }.solve::<Both>(&mut sheet, self.last, loom);
         }
         false
     }
