@@ -11,12 +11,14 @@ mod chart;
 mod coloring;
 mod edges;
 mod geodesic;
+pub(crate) mod grain;
 mod grouped;
 mod job;
 mod lattice;
 mod levels;
 mod order;
 pub(crate) mod plan;
+mod shares;
 pub(crate) mod source;
 mod springs;
 pub(crate) mod system;
@@ -72,6 +74,6 @@ fn particles_of(source: &SourceMesh, to_world: Mat3A) -> Result<(Welded, Topolog
         shape = Shape::find(&rest(&welded), &triangles(&welded))?;
     }
     let uvs = source.uvs.as_ref().and_then(|uvs| welded.shared(uvs));
-    let topology = topology::build(rest(&welded), shape, uvs);
+    let topology = topology::build(rest(&welded), shape, uvs, &grain::find(source, to_world));
     Ok((welded, topology))
 }

@@ -73,6 +73,9 @@ pub struct Cloth {
     pub max_velocity: f32,
     /// Density of the air around in kg/m³. 1.225 at sea level, 0 for a vacuum.
     pub fluid_density: f32,
+    /// Distance in m that the cloth keeps from obstacles beyond its fabric's thickness, 0 or more: the more the larger its
+    /// triangles are, so that no corner of an obstacle shows between its particles.
+    pub collision_margin: f32,
     /// Which obstacles the cloth meets: those whose [`ClothCollider::layers`](crate::prelude::ClothCollider::layers)
     /// have a bit in common with it.
     pub collision_mask: u32,
@@ -90,6 +93,7 @@ impl Default for Cloth {
             tether_slack: Some(0.005),
             max_velocity: 50.0,
             fluid_density: 1.225,
+            collision_margin: 0.005,
             collision_mask: u32::MAX,
         }
     }
@@ -138,7 +142,8 @@ impl Cloth {
         check("Cloth::tether_slack", slack, slack >= 0.0, "0 or greater, or `None`")?;
         check("Cloth::max_velocity", self.max_velocity, self.max_velocity > 0.0, "greater than 0 m/s")?;
         let air = self.fluid_density;
-        check("Cloth::fluid_density", air, air >= 0.0, "0 kg/m³ or greater")
+        check("Cloth::fluid_density", air, air >= 0.0, "0 kg/m³ or greater")?;
+        check("Cloth::collision_margin", self.collision_margin, self.collision_margin >= 0.0, "0 m or greater")
     }
 }
 

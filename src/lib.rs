@@ -74,11 +74,12 @@ pub mod prelude {
     #[cfg(feature = "picking")]
     pub use crate::picking::{ClothPickingPlugin, ClothPickingSettings, PointerGrabs};
     pub use crate::{
+        build::grain::ATTRIBUTE_WARP,
         cloth::{Cloth, ClothFailed, ClothGravity, ClothReady, ClothReset, ClothSolver, ClothStatus, ResetCause},
         collider::ClothCollider,
         commands::ClothCommands,
         error::ClothError,
-        fabric::{Fabric, file::FabricFileError, handle::FabricHandle},
+        fabric::{ClothSprings, Fabric, file::FabricFileError, handle::FabricHandle},
         grab::{ClothGrabbed, ClothGrip, ClothPoint, ClothReleased, GrabId},
         grid::ClothGrid,
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},

@@ -145,7 +145,8 @@ impl Plugin for ClothPlugin {
                     .in_set(ClothSystems::Draw),
             )
             .add_observer(build::system::on_cloth_removed)
-            .add_observer(collider::on_collider_removed);
+            .add_observer(collider::on_collider_removed)
+            .add_observer(settings::on_springs_removed);
     }
 
     /// Does what needs a plugin that has come later, and says what is missing.

@@ -2,14 +2,22 @@
 
 use bevy::prelude::*;
 
-use crate::{anchor, cloth::Cloth, cloth::ClothStatus, fabric::Fabric, state::ClothState};
+use crate::{
+    anchor,
+    cloth::{Cloth, ClothStatus},
+    fabric::{ClothSprings, Fabric},
+    state::ClothState,
+};
 
-/// Reads changed [`Cloth`] and [`Fabric`] components. Refusals are told once, until all is valid again: a slider that
-/// is held at a bad value sends one every frame.
+/// Reads changed [`Cloth`], [`Fabric`] and [`ClothSprings`] components. Refusals are told once, until all is valid again: a
+/// slider that is held at a bad value sends one every frame.
 pub(crate) fn update_settings(
-    mut cloths: Query<(Entity, &Cloth, &Fabric, &mut ClothState, &ClothStatus), Or<(Changed<Cloth>, Changed<Fabric>)>>,
+    mut cloths: Query<
+        (Entity, &Cloth, &Fabric, Option<&ClothSprings>, &mut ClothState, &ClothStatus),
+        Or<(Changed<Cloth>, Changed<Fabric>, Changed<ClothSprings>)>,
+    >,
 ) {
-    for (entity, cloth, fabric, mut state, status) in &mut cloths {
+    for (entity, cloth, fabric, springs, mut state, status) in &mut cloths {
         if *status != ClothStatus::Ready {
             continue;
         }
@@ -17,7 +25,7 @@ pub(crate) fn update_settings(
             state.effort = cloth.effort(&state.topology);
             state.settings = cloth.clone();
         });
-        let material = fabric.material().map(|material| {
+        let material = fabric.material_with(springs).map(|material| {
             state.material = Some(material);
             anchor::set_masses(&mut state);
         });
@@ -28,5 +36,12 @@ pub(crate) fn update_settings(
             }
         }
         state.said.refused = !refusals.is_empty();
+    }
+}
+
+/// Without plain springs, the fabric's moduli are in force again.
+pub(crate) fn on_springs_removed(removed: On<Remove, ClothSprings>, mut fabrics: Query<&mut Fabric>) {
+    if let Ok(mut fabric) = fabrics.get_mut(removed.entity) {
+        fabric.set_changed();
     }
 }

@@ -96,6 +96,7 @@ fn step_cloth(
         max_velocity,
         tethers: state.settings.tether_slack.map(|_| &state.tethers),
         tether_slack: state.settings.tether_slack.unwrap_or_default(),
+        margin: state.settings.collision_margin,
         obstacles: near,
         fluid_density: state.settings.fluid_density,
         winds: felt,

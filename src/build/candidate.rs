@@ -21,7 +21,7 @@ use crate::{
         mesh::{ClothMesh, Drawn},
     },
     error::ClothError,
-    fabric::Fabric,
+    fabric::{ClothSprings, Fabric},
     origin,
     pins::{PinTarget, Pins, targets_by_particle},
     solver::{Material, Particles, Tethers},
@@ -36,6 +36,7 @@ pub(crate) struct Candidate {
     pub mesh: &'static mut Mesh3d,
     cloth: Ref<'static, Cloth>,
     fabric: Ref<'static, Fabric>,
+    springs: Option<Ref<'static, ClothSprings>>,
     pins: Ref<'static, Pins>,
     transform: Ref<'static, GlobalTransform>,
     status: &'static mut ClothStatus,
@@ -125,7 +126,7 @@ impl CandidateItem<'_, '_> {
             return Ok(None);
         }
         self.cloth.validate()?;
-        let material = self.fabric.material()?;
+        let material = self.fabric.material_with(self.springs.as_deref())?;
         // What is drawn is a copy: it would leave for the render world with the first frame, and couldn't be written.
         if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
             return Err(ClothError::NotInMainWorld);

@@ -33,7 +33,8 @@ pub(crate) fn batches(count: usize, all: &[(SpringKind, Spring)], woven: &[bool]
                 }
                 !is_free
             });
-            batches.push(SpringBatch { kind, range: start..springs.len(), woven: on_thread });
+            let carries = springs[start..].iter().any(|spring| spring.share != [0.0; 3]);
+            batches.push(SpringBatch { kind, range: start..springs.len(), woven: on_thread, carries });
         }
     }
     (springs, batches)

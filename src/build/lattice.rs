@@ -182,7 +182,7 @@ pub(super) fn weave(rectangle: &Rectangle, springs: &[(SpringKind, Spring)]) -> 
     let (columns, closed) = (*columns, *closed);
     let place = |particle: u32| (particle as usize / columns, particle as usize % columns);
     let mut lengths = vec![[0.0; WAYS.len()]; particles.len()];
-    let mut put = |&(kind, Spring { a, b, rest }): &(SpringKind, Spring)| {
+    let mut put = |&(kind, Spring { a, b, rest, .. }): &(SpringKind, Spring)| {
         let (first, second) = (a.min(b), a.max(b));
         let (from, to) = (place(first), place(second));
         let way = (to.0 as isize - from.0 as isize, to.1 as isize - from.1 as isize);

@@ -181,7 +181,7 @@ fn bits(to_world: Mat3A) -> [u32; 9] {
 }
 
 fn hash(source: &SourceMesh) -> u64 {
-    let SourceMesh { positions, triangles, normals, uvs, tangents } = source;
+    let SourceMesh { positions, triangles, normals, uvs, warp, tangents } = source;
     let mut hasher = FixedHasher.build_hasher();
     triangles.hash(&mut hasher);
     let mut add = |values: &mut dyn Iterator<Item = f32>| {
@@ -194,6 +194,7 @@ fn hash(source: &SourceMesh) -> u64 {
     add(&mut positions.iter().flat_map(Vec3::to_array));
     add(&mut normals.iter().flatten().flat_map(Vec3::to_array));
     add(&mut uvs.iter().flatten().flat_map(Vec2::to_array));
+    add(&mut warp.iter().flatten().flat_map(Vec3::to_array));
     add(&mut tangents.iter().flatten().flat_map(Vec4::to_array));
     hasher.finish()
 }

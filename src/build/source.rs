@@ -5,6 +5,7 @@ use bevy::{
     prelude::*,
 };
 
+use super::grain::ATTRIBUTE_WARP;
 use crate::error::ClothError;
 
 /// The geometry of a mesh, checked.
@@ -18,6 +19,8 @@ pub(crate) struct SourceMesh {
     pub normals: Option<Vec<Vec3>>,
     /// First UV of each vertex, where the mesh has them.
     pub uvs: Option<Vec<Vec2>>,
+    /// Direction of the warp at each vertex, where the mesh has it.
+    pub warp: Option<Vec<Vec3>>,
     /// Tangent of each vertex with its handedness, where the mesh has them.
     pub tangents: Option<Vec<Vec4>>,
 }
@@ -27,7 +30,7 @@ impl SourceMesh {
     pub fn read(mesh: &Mesh) -> Result<Self, ClothError> {
         let positions = read_positions(mesh)?;
         let triangles = read_triangles(mesh, positions.len())?;
-        let normals = match per_vertex(mesh, Mesh::ATTRIBUTE_NORMAL) {
+        let directions = |attribute| match per_vertex(mesh, attribute) {
             Some(VertexAttributeValues::Float32x3(values)) => Some(values.iter().copied().map(Vec3::from).collect()),
             _ => None,
         };
@@ -35,7 +38,8 @@ impl SourceMesh {
             Some(VertexAttributeValues::Float32x4(values)) => Some(values.iter().copied().map(Vec4::from).collect()),
             _ => None,
         };
-        Ok(Self { positions, triangles, normals, uvs: read_uvs(mesh), tangents })
+        let (normals, warp) = (directions(Mesh::ATTRIBUTE_NORMAL), directions(ATTRIBUTE_WARP));
+        Ok(Self { positions, triangles, normals, uvs: read_uvs(mesh), warp, tangents })
     }
 }
 

@@ -68,7 +68,7 @@ struct Arm {
 /// The structural springs at each particle.
 fn arms(rest: &[Vec3], springs: &[(SpringKind, Spring)]) -> Vec<Vec<Arm>> {
     let mut arms = vec![Vec::new(); rest.len()];
-    for (spring, (kind, Spring { a, b, rest: length })) in (0..).zip(springs) {
+    for (spring, (kind, Spring { a, b, rest: length, .. })) in (0..).zip(springs) {
         if *kind == SpringKind::Structural && *length > 0.0 {
             let along = (rest[*b as usize] - rest[*a as usize]) / *length;
             arms[*a as usize].push(Arm { spring, end: 0, along });
@@ -227,7 +227,10 @@ mod tests {
         let mut path: Vec<u32> = (0..rest.len() as u32).collect();
         path.insert(before + 1, crossing);
         let spring = |&[a, b]: &[u32; 2]| {
-            (SpringKind::Structural, Spring { a, b, rest: rest[a as usize].distance(rest[b as usize]) })
+            (
+                SpringKind::Structural,
+                Spring { a, b, rest: rest[a as usize].distance(rest[b as usize]), ..Spring::default() },
+            )
         };
         let springs: Vec<_> = path.array_windows().map(spring).collect();
         let threads = find(&rest, &Edges::new(rest.len(), &[]), &springs);

@@ -9,7 +9,7 @@ use super::{
     edges::Edges,
     grouped::Grouped,
     lattice::{self, Rectangle},
-    levels, springs, threads,
+    levels, shares, springs, threads,
 };
 use crate::{
     error::ClothError,
@@ -23,6 +23,8 @@ const SLIVER: f32 = 1e-6;
 #[derive(Debug)]
 pub(super) struct Shape {
     triangles: Vec<[u32; 3]>,
+    /// The mesh's number of each triangle.
+    numbers: Vec<usize>,
     slivers: Vec<[u32; 3]>,
     pub edges: Edges,
     cells: Cells,
@@ -35,25 +37,30 @@ impl Shape {
     /// Triangles that repeat others, as the back of a sheet modelled with two sides does, count once. Triangles without
     /// area keep their edges as springs, and neither weigh nor catch wind.
     pub fn find(rest: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ClothError> {
-        let (triangles, slivers) = sort_out(rest, triangles);
+        let (kept, slivers) = sort_out(rest, triangles);
+        let (numbers, triangles): (Vec<usize>, Vec<[u32; 3]>) = kept.into_iter().unzip();
         if triangles.is_empty() {
             return Err(ClothError::Empty);
         }
         let edges = Edges::new(rest.len(), &triangles);
         let cells = cells::find(rest, &triangles, &edges);
         let rectangle = lattice::find(&cells, rest.len());
-        Ok(Self { triangles, slivers, edges, cells, rectangle })
+        Ok(Self { triangles, numbers, slivers, edges, cells, rectangle })
     }
 }
 
 /// The topology of the particles at `rest` (m) that form a `shape`. `uvs` are those of the particles, where they have
-/// one each.
-pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>) -> Topology {
-    let Shape { triangles, slivers, edges, cells, rectangle } = shape;
+/// one each, and `warp` is the direction of the warp in each of the mesh's triangles.
+pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp: &[Vec3]) -> Topology {
+    let Shape { triangles, numbers, slivers, edges, cells, rectangle } = shape;
+    let warp: Vec<Vec3> = numbers.into_iter().map(|number| warp[number]).collect();
     let links = springs::find(&rest, &triangles, &slivers, &edges, &cells);
-    let with_length =
-        |&(kind, a, b): &springs::Link| (kind, Spring { a, b, rest: rest[a as usize].distance(rest[b as usize]) });
-    let all: Vec<_> = links.iter().map(with_length).collect();
+    let with_length = |&(kind, a, b): &springs::Link| {
+        let length = rest[a as usize].distance(rest[b as usize]);
+        (kind, Spring { a, b, rest: length, ..Spring::default() })
+    };
+    let mut all: Vec<_> = links.iter().map(with_length).collect();
+    shares::share_out(&rest, &cells, &warp, &mut all);
     let woven = rectangle.filter(Rectangle::is_in_order).map(|rectangle| lattice::weave(&rectangle, &all));
     let (lattice, braids, woven) = match woven {
         Some((lattice, woven)) => (Some(lattice), Vec::new(), woven),
@@ -72,23 +79,38 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>) -> To
     let (springs, batches) = coloring::batches(rest.len(), &all, &woven);
     let triangle_areas: Vec<f32> = triangles.iter().map(|triangle| triangle_area(&rest, triangle)).collect();
     let areas = particle_areas(rest.len(), &triangles, &triangle_areas);
-    Topology { rest, springs, batches, triangles, triangle_areas, areas, cells: cells.corners, lattice, braids, levels }
+    Topology {
+        rest,
+        springs,
+        batches,
+        triangles,
+        triangle_areas,
+        areas,
+        cells: cells.corners,
+        lattice,
+        braids,
+        levels,
+        ..Topology::default()
+    }
 }
 
-/// Splits triangles with distinct corners into those with an area and slivers, and drops repetitions.
-fn sort_out(rest: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<[u32; 3]>) {
+/// Splits triangles with distinct corners into those with an area, with their numbers, and slivers, and drops repetitions.
+fn sort_out(rest: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<(usize, [u32; 3])>, Vec<[u32; 3]>) {
     let repeats = repetitions(rest.len(), triangles);
-    triangles
+    let (kept, slivers): (Vec<_>, Vec<_>) = triangles
         .iter()
+        .copied()
+        .enumerate()
         .zip(repeats)
-        .filter(|&(&[i, j, k], repeats)| !repeats && i != j && j != k && k != i)
+        .filter(|&((_, [i, j, k]), repeats)| !repeats && i != j && j != k && k != i)
         .map(|(triangle, _)| triangle)
-        .partition(|triangle| {
+        .partition(|(_, triangle)| {
             let [a, b, c] = triangle.map(|i| rest[i as usize]);
             let sides = [b - a, c - b, a - c];
             let longest = sides.map(Vec3::length_squared).into_iter().fold(0.0, f32::max);
             triangle_area(rest, triangle) > SLIVER * longest
-        })
+        });
+    (kept, slivers.into_iter().map(|(_, triangle)| triangle).collect())
 }
 
 /// Whether each triangle has the same corners as one before it.

@@ -114,12 +114,12 @@ pub(super) fn overload(state: &ClothState, gravity: Vec3, kinetic: f32) -> Optio
     }
     let topology = &state.topology;
     let position = &state.particles.position;
-    let stiffness = material.spring(SpringKind::Structural).stiffness;
     let carried: f32 = topology
         .springs_of(SpringKind::Structural)
         .map(|spring| {
             let length = position[spring.a as usize].distance(position[spring.b as usize]);
-            stiffness * (length - spring.rest).max(0.0) * length
+            let law = material.spring(SpringKind::Structural, spring);
+            law.secant(length / spring.rest - 1.0) * (length - spring.rest).max(0.0) * length
         })
         .sum();
     let mass = material.density * topology.areas.iter().sum::<f32>();

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     cloth::{Cloth, ClothGravity, ClothSolver, ClothStatus},
-    solver::{SpringKind, Strain},
+    solver::{Strain},
     state::ClothState,
 };
 
@@ -122,7 +122,7 @@ fn situation(state: &ClothState, watch: &Watch) -> Option<Situation> {
         substeps,
         max_substeps,
         has_tethers: tether_slack.is_some(),
-        stiffness: state.material?.spring(SpringKind::Structural).stiffness,
+        stiffness: state.material?.thread_stiffness().stiffness,
         stiffness_scale,
         needed: state.report().map_or(substeps, |report| report.needed_substeps),
         strain,

@@ -10,7 +10,7 @@ use core::ops::Range;
 
 use bevy::math::{Isometry3d, Quat, Vec3A};
 
-use super::{Lanes, Material, Particles, StepContext};
+use super::{Lanes, Particles, StepContext};
 
 pub mod shape;
 
@@ -57,7 +57,7 @@ pub(super) fn is_any_near(particles: &Particles, ctx: &StepContext, dt: f32) -> 
     let fastest = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
     let (centre, radius) = ((low + high) / 2.0, low.distance(high) / 2.0);
     // A step ahead, and once more for what it gains in speed.
-    let reach = radius + ctx.material.thickness + 2.0 * fastest * dt + GAINED;
+    let reach = radius + ctx.contact_distance() + 2.0 * fastest * dt + GAINED;
     ctx.obstacles.iter().any(|obstacle| {
         let Obstacle { start, end, shape, .. } = obstacle;
         let way = start.translation.distance(end.translation);
@@ -70,11 +70,11 @@ pub(super) fn is_any_near(particles: &Particles, ctx: &StepContext, dt: f32) -> 
 
 /// Projects all free particles out of all obstacles within the part `span` (0..=1) of the step. Returns the number of
 /// contacts.
-pub(super) fn project(lanes: &mut Lanes, obstacles: &[Obstacle], material: &Material, span: Range<f32>) -> u32 {
+pub(super) fn project(lanes: &mut Lanes, ctx: &StepContext, span: Range<f32>) -> u32 {
     let mut contacts = 0;
-    for obstacle in obstacles {
-        let moving = MovingShape::new(obstacle, material.thickness, span.clone());
-        let friction = material.friction * obstacle.friction;
+    for obstacle in ctx.obstacles {
+        let moving = MovingShape::new(obstacle, ctx.contact_distance(), span.clone());
+        let friction = ctx.material.friction * obstacle.friction;
         for i in 0..lanes.slot_count() {
             if lanes.inverse_mass(i) == 0.0 {
                 continue;
@@ -94,7 +94,8 @@ pub(super) fn project(lanes: &mut Lanes, obstacles: &[Obstacle], material: &Mate
 /// An obstacle's shape within one substep.
 struct MovingShape {
     shape: ColliderShape,
-    thickness: f32,
+    /// Distance that particles keep from it, m.
+    distance: f32,
     start: Isometry3d,
     end: Isometry3d,
     from_world_start: Isometry3d,
@@ -116,14 +117,14 @@ struct Push {
 }
 
 impl MovingShape {
-    fn new(obstacle: &Obstacle, thickness: f32, span: Range<f32>) -> Self {
+    fn new(obstacle: &Obstacle, distance: f32, span: Range<f32>) -> Self {
         let (start, end) = (obstacle.pose(span.start), obstacle.pose(span.end));
         // |q1 - q0| is half of the angle, to first order, on the shorter of the two ways around.
         let (q0, q1) = (start.rotation, end.rotation);
         let turn = 2.0 * shorter_way(q0, q1);
         Self {
             shape: obstacle.shape,
-            thickness,
+            distance,
             from_world_start: start.inverse(),
             from_world_end: end.inverse(),
             start,
@@ -165,10 +166,10 @@ impl MovingShape {
         Some(Push { normal, depth, old_depth: old_depth.min(depth), surface_way })
     }
 
-    /// The surface that particles stay out of, seen from `local`: the shape and the cloth's thickness around it.
+    /// The surface that particles stay out of, seen from `local`: the shape and the distance kept around it.
     fn surface(&self, local: Vec3A) -> Surface {
         let surface = self.shape.surface(local);
-        Surface { distance: surface.distance - self.thickness, ..surface }
+        Surface { distance: surface.distance - self.distance, ..surface }
     }
 
     /// Where the straight way from `from` to `to` enters the shape, and the normal there. Sphere tracing (Hart 1996).

@@ -53,6 +53,8 @@ pub struct StepContext<'a> {
     pub tethers: Option<&'a Tethers>,
     /// By how much of its length a tether gives, no unit. 0.002 to 0.01.
     pub tether_slack: f32,
+    /// Distance that particles keep from obstacles beyond the cloth's thickness, m.
+    pub margin: f32,
     /// Obstacles and their way.
     pub obstacles: &'a [Obstacle],
     /// Density of the air, kg/m³. Zero for a vacuum.
@@ -61,6 +63,13 @@ pub struct StepContext<'a> {
     pub winds: &'a [WindSource],
     /// Threads that may help with a large cloth. The bits are the same without.
     pub pool: Option<&'a TaskPool>,
+}
+
+impl StepContext<'_> {
+    /// Distance that particles keep from obstacles, m.
+    pub fn contact_distance(&self) -> f32 {
+        self.material.thickness + self.margin
+    }
 }
 
 /// What a step did.

@@ -10,6 +10,9 @@ use super::{Lanes, Material, Particles, Spring, SpringConstants, StepContext, To
 /// is bent out of its rest shape.
 const STABLE: f32 = 3.6;
 
+/// The strain up to which springs that stiffen are stable, no unit.
+const STRETCHED: f32 = 0.2;
+
 /// Substeps that keep a step of `dt` seconds stable, and the share of stiffness and damping that `ctx.max_substeps` of
 /// them can carry: 1 unless more would be needed.
 ///
@@ -46,8 +49,10 @@ fn sum_spring_constants(topology: &Topology, material: &Material, sums: &mut Vec
     sums.clear();
     sums.resize(topology.particle_count(), (0.0, 0.0));
     for batch in &topology.batches {
-        let SpringConstants { stiffness, damping } = material.spring(batch.kind);
         for spring in &topology.springs[batch.range.clone()] {
+            let law = material.spring(batch.kind, spring);
+            let SpringConstants { stiffness, damping } = law.constants;
+            let stiffness = stiffness * (1.0 + law.stiffening * STRETCHED);
             for particle in [spring.a, spring.b] {
                 let (k, c) = &mut sums[particle as usize];
                 *k += stiffness;
@@ -66,12 +71,14 @@ pub(super) fn add_spring_forces(
     force: &mut [Vec3A],
 ) {
     for batch in &topology.batches {
-        let SpringConstants { stiffness, damping } = material.spring(batch.kind);
-        let (k, c) = (stiffness * stiffness_scale, damping * stiffness_scale);
-        for &Spring { a, b, rest } in &topology.springs[batch.range.clone()] {
+        for spring in &topology.springs[batch.range.clone()] {
+            let law = material.spring(batch.kind, spring);
+            let &Spring { a, b, rest, .. } = spring;
             let (p, q) = (a as usize, b as usize);
             let along = particles.position[p] - particles.position[q];
             let length = along.length();
+            let k = law.secant(length / rest - 1.0) * stiffness_scale;
+            let c = law.constants.damping * stiffness_scale;
             let n = along.normalize_or_zero();
             let approach = n.dot(particles.velocity[p] - particles.velocity[q]);
             let pull = n * (k * (rest - length) - c * approach);

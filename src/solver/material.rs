@@ -1,6 +1,34 @@
 //! The physical constants of a cloth, as the solver reads them.
 
-use super::SpringKind;
+use super::{Grain, Spring, SpringKind};
+
+/// What a cloth is made of. All values are finite and not negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Areal density, kg/m². Greater than zero.
+    pub density: f32,
+    /// How it answers to being deformed.
+    pub elasticity: Elasticity,
+    /// Damping of the velocity, 1/s.
+    pub damping: f32,
+    /// Thickness, m.
+    pub thickness: f32,
+    /// Coulomb friction against obstacles, no unit.
+    pub friction: f32,
+    /// Drag coefficient, no unit.
+    pub drag: f32,
+    /// Lift coefficient, no unit.
+    pub lift: f32,
+}
+
+/// How a cloth answers to being deformed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Elasticity {
+    /// By springs that are alike, whatever the size of the mesh's cells. Constants by [`SpringKind::index`].
+    Springs([SpringConstants; 3]),
+    /// By what a laboratory measures, whatever the mesh.
+    Moduli(Moduli),
+}
 
 /// Constants of one kind of spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -11,28 +39,190 @@ pub struct SpringConstants {
     pub damping: f32,
 }
 
-/// What a cloth is made of. All values are finite and not negative.
+/// Moduli of a sheet: forces over the width that they act on, N/m.
+///
+/// In its plane the sheet answers to strains εu along the warp, εv along the weft and the shear angle γ with
+///
+/// ```text
+///   ┌ Tu ┐   ┌ Cu  G   0 ┐ ┌ εu ┐
+///   │ Tv │ = │ G   Cv  0 │ │ εv │
+///   └ S  ┘   └ 0   0   G ┘ └ γ  ┘
+/// ```
+///
+/// One constant G serves as shear modulus and as what couples warp and weft: that is what springs along threads and
+/// diagonals amount to (Cauchy's relation), so springs and triangles can be the same sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moduli {
+    /// Cu and Cv by [`Grain::index`], N/m. Not smaller than G.
+    pub stretch: [f32; 2],
+    /// G, N/m.
+    pub shear: f32,
+    /// By how much the threads' part C - G grows with their strain, by [`Grain::index`], no unit: tension is
+    /// (C - G)(ε + s ε²/2).
+    pub stiffening: [f32; 2],
+    /// Share of C - G that is left of threads that are pressed together, 0..=1.
+    pub compression: f32,
+    /// Bending rigidity, N·m.
+    pub bending: f32,
+    /// Retardation time of the stretch, s: the damping over the stiffness.
+    pub stretch_damping: f32,
+    /// Retardation time of bending, s.
+    pub bend_damping: f32,
+}
+
+impl Moduli {
+    /// Makes the sheet that gives back what a laboratory measures on strips with free sides: `pulled`, the force over
+    /// width and strain along warp and weft, N/m, and its growth with the strain, `stiffening` (no unit).
+    ///
+    /// A strip that is pulled along the warp gets narrower until nothing pulls across: Tv = 0 gives
+    /// Tu / εu = Cu - G²/Dv, with Dv = G + compression · (Cv - G), as the weft is pressed together. The other way round
+    /// the same. None where that would need C < G, which is where `shear` is more than [`most_shear`](Self::most_shear).
+    pub fn from_strips(pulled: [f32; 2], shear: f32, stiffening: [f32; 2], compression: f32) -> Option<Self> {
+        let mut stretch = pulled.map(|k| k + shear);
+        let narrowing = |across: f32| {
+            let pressed = shear + compression * (across - shear);
+            if pressed > 0.0 { shear * shear / pressed } else { 0.0 }
+        };
+        // Each round leaves a small part of the error: that of a second is mostly too small for the numbers.
+        for _ in 0..64 {
+            let [warp, weft] = stretch;
+            stretch = [pulled[0] + narrowing(weft), pulled[1] + narrowing(warp)];
+        }
+        let threads = stretch.map(|c| c - shear);
+        // Of a strip, only the threads' part stiffens.
+        let growth = |i: usize| if threads[i] > 0.0 { stiffening[i] * pulled[i] / threads[i] } else { 0.0 };
+        let stiffening = [growth(0), growth(1)];
+        let moduli = Self { stretch, shear, stiffening, compression, ..Self::default() };
+        (shear <= Self::most_shear(pulled)).then_some(moduli)
+    }
+
+    /// The largest shear modulus (N/m) that goes with strips of such stiffness: k K / (K - k) for the smaller k and the
+    /// larger K. Infinite where both are equal.
+    pub fn most_shear([warp, weft]: [f32; 2]) -> f32 {
+        warp * weft / (warp - weft).abs()
+    }
+
+    /// Stiffness of a spring at its rest length, N/m.
+    pub fn of_spring(&self, spring: &Spring) -> f32 {
+        let [warp, weft, shear] = spring.share;
+        // A cell that is very long and narrow would need springs that push apart.
+        (warp * self.stretch[0] + weft * self.stretch[1] + shear * self.shear).max(0.0)
+    }
+}
+
+/// Hooke's law of one spring, and how it departs from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
-    /// Areal density, kg/m². Greater than zero.
-    pub density: f32,
-    /// Constants by [`SpringKind::index`].
-    pub springs: [SpringConstants; 3],
-    /// Damping of the velocity, 1/s.
-    pub damping: f32,
-    /// Distance that particles keep from obstacles, m.
-    pub thickness: f32,
-    /// Coulomb friction against obstacles, no unit.
-    pub friction: f32,
-    /// Drag coefficient, no unit.
-    pub drag: f32,
-    /// Lift coefficient, no unit.
-    pub lift: f32,
+pub struct SpringLaw {
+    /// Stiffness and damping at rest length.
+    pub constants: SpringConstants,
+    /// By how much the stiffness grows with the strain, no unit: tension is k L (ε + s ε²/2).
+    pub stiffening: f32,
+    /// Share of the stiffness that is left where it is pressed together, 0..=1.
+    pub compression: f32,
+}
+
+impl SpringLaw {
+    /// Tension over change of length at a strain, N/m.
+    pub fn secant(&self, strain: f32) -> f32 {
+        let factor = if strain < 0.0 { self.compression } else { 1.0 + 0.5 * self.stiffening * strain };
+        self.constants.stiffness * factor
+    }
+
+    /// Energy of a spring with length `rest` (m) at a strain, J.
+    pub fn energy(&self, rest: f32, strain: f32) -> f32 {
+        let factor = if strain < 0.0 { self.compression } else { 1.0 + self.stiffening * strain / 3.0 };
+        0.5 * self.constants.stiffness * factor * (strain * rest) * (strain * rest)
+    }
 }
 
 impl Material {
-    /// Constants of one kind of spring.
-    pub fn spring(&self, kind: SpringKind) -> SpringConstants {
-        self.springs[kind.index()]
+    /// A cloth without thickness, friction, damping and air.
+    pub const fn bare(density: f32, elasticity: Elasticity) -> Self {
+        Self { density, elasticity, damping: 0.0, thickness: 0.0, friction: 0.0, drag: 0.0, lift: 0.0 }
+    }
+
+    /// What one spring of a kind does.
+    pub fn spring(&self, kind: SpringKind, spring: &Spring) -> SpringLaw {
+        match &self.elasticity {
+            Elasticity::Springs(constants) => {
+                SpringLaw { constants: constants[kind.index()], stiffening: 0.0, compression: 1.0 }
+            }
+            Elasticity::Moduli(moduli) => {
+                let stiffness = moduli.of_spring(spring);
+                let constants = SpringConstants { stiffness, damping: stiffness * moduli.stretch_damping };
+                if kind == SpringKind::Structural {
+                    let stiffening = moduli.stiffening[spring.grain().index()];
+                    SpringLaw { constants, stiffening, compression: moduli.compression }
+                } else {
+                    SpringLaw { constants, stiffening: 0.0, compression: 1.0 }
+                }
+            }
+        }
+    }
+
+    /// What springs that are alike would be, in a stage where the solver doesn't know better.
+    pub fn alike(&self, kind: SpringKind) -> SpringConstants {
+        match &self.elasticity {
+            Elasticity::Springs(constants) => constants[kind.index()],
+            Elasticity::Moduli(moduli) => {
+                let thread = self.thread_stiffness().stiffness - moduli.shear;
+                let stiffness = [thread, moduli.shear, 0.0][kind.index()];
+                SpringConstants { stiffness, damping: stiffness * moduli.stretch_damping }
+            }
+        }
+    }
+
+    /// The moduli, if it is made of such.
+    pub fn moduli(&self) -> Option<&Moduli> {
+        match &self.elasticity {
+            Elasticity::Springs(_) => None,
+            Elasticity::Moduli(moduli) => Some(moduli),
+        }
+    }
+
+    /// The stiffest that a thread is, N/m: on a square grid, that of a spring.
+    pub fn thread_stiffness(&self) -> SpringConstants {
+        match &self.elasticity {
+            Elasticity::Springs([structural, ..]) => *structural,
+            Elasticity::Moduli(moduli) => {
+                let stiffness = moduli.stretch[Grain::Warp.index()].max(moduli.stretch[Grain::Weft.index()]);
+                SpringConstants { stiffness, damping: stiffness * moduli.stretch_damping }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tension over strain along one direction of a sheet whose sides are free, N/m.
+    fn pulled(moduli: &Moduli, along: Grain) -> f32 {
+        let [along, across] = [moduli.stretch[along.index()], moduli.stretch[1 - along.index()]];
+        let pressed = moduli.shear + moduli.compression * (across - moduli.shear);
+        along - moduli.shear * moduli.shear / pressed
+    }
+
+    #[test]
+    fn a_strip_gives_back_what_was_measured() {
+        for compression in [1.0, 0.3, 0.0] {
+            for (k, shear) in [([33.0, 69.0], 37.0), ([4000.0, 4000.0], 50.0), ([411.0, 2028.0], 53.0)] {
+                let moduli = Moduli::from_strips(k, shear, [0.0; 2], compression).unwrap();
+                for (grain, k) in [Grain::Warp, Grain::Weft].into_iter().zip(k) {
+                    assert!((pulled(&moduli, grain) / k - 1.0).abs() < 1e-4, "{k} {compression}");
+                }
+            }
+        }
+        // The springs of a square grid of jersey.
+        let jersey = Moduli::from_strips([33.0, 69.0], 37.0, [0.0; 2], 1.0).unwrap();
+        assert!((jersey.stretch[0] - 37.0 - 9.9).abs() < 0.1 && (jersey.stretch[1] - 37.0 - 61.2).abs() < 0.1);
+    }
+
+    #[test]
+    fn what_springs_cannot_do_is_refused() {
+        assert!((Moduli::most_shear([10.0, 30.0]) - 15.0).abs() < 1e-4);
+        assert!(Moduli::from_strips([10.0, 30.0], 14.9, [0.0; 2], 1.0).is_some());
+        assert_eq!(Moduli::from_strips([10.0, 30.0], 15.1, [0.0; 2], 1.0), None);
+        assert!(Moduli::from_strips([10.0, 10.0], 1e6, [0.0; 2], 1.0).is_some());
     }
 }

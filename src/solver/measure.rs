@@ -19,7 +19,7 @@ pub struct Strain {
 pub struct Energy {
     /// Of motion: the sum of m v²/2 over the free particles.
     pub kinetic: f32,
-    /// Of all springs: the sum of k (|xa - xb| - L0)²/2.
+    /// Of all springs, triangles and bends.
     pub elastic: f32,
     /// Of height: minus the sum of m g·x, with x relative to the cloth's origin. Only its changes mean something.
     pub gravitational: f32,
@@ -56,10 +56,9 @@ pub fn energy(particles: &Particles, topology: &Topology, material: &Material, g
         }
     }
     for kind in SpringKind::ALL {
-        let stiffness = material.spring(kind).stiffness;
         for spring in topology.springs_of(kind) {
-            let stretch = spring::strain(&particles.position, spring) * spring.rest;
-            energy.elastic += 0.5 * stiffness * stretch * stretch;
+            let strain = spring::strain(&particles.position, spring);
+            energy.elastic += material.spring(kind, spring).energy(spring.rest, strain);
         }
     }
     energy
@@ -68,7 +67,7 @@ pub fn energy(particles: &Particles, topology: &Topology, material: &Material, g
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::{Spring, SpringBatch, SpringConstants};
+    use crate::solver::{Elasticity, Spring, SpringBatch, SpringConstants};
 
     #[test]
     fn a_stretched_moving_pair_has_the_strain_and_the_energy_of_the_book() {
@@ -79,15 +78,14 @@ mod tests {
             ..Particles::default()
         };
         let topology = Topology {
-            springs: vec![Spring { a: 0, b: 1, rest: 2.0 }],
-            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1, woven: false }],
+            springs: vec![Spring { a: 0, b: 1, rest: 2.0, ..Spring::default() }],
+            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1, woven: false, carries: false }],
             areas: vec![1.0; 2],
             ..Default::default()
         };
         let mut springs = [SpringConstants::default(); 3];
         springs[0].stiffness = 100.0;
-        let material =
-            Material { density: 1.0, springs, damping: 0.0, thickness: 0.0, friction: 0.0, drag: 0.0, lift: 0.0 };
+        let material = Material::bare(1.0, Elasticity::Springs(springs));
         assert_eq!(strain(&particles, &topology), Strain { largest: 0.5, mean: 0.5 });
         let energy = energy(&particles, &topology, &material, Vec3A::X * 10.0);
         assert_eq!(energy, Energy { kinetic: 16.0, elastic: 50.0, gravitational: -60.0 });

@@ -97,7 +97,7 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
             Method::Explicit => grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h),
         }
         if is_near {
-            contacts = contact::project(&mut scratch.lanes, ctx.obstacles, &ctx.material, span);
+            contacts = contact::project(&mut scratch.lanes, ctx, span);
         }
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
         if !is_finished && (ctx.method != Method::Explicit || contacts > 0 || !ctx.grabs.is_empty()) {

@@ -27,8 +27,25 @@ impl SpringKind {
     }
 }
 
+/// A direction of the threads that a cloth is woven of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Grain {
+    /// Along the length of the cloth as it comes from the loom: down a texture.
+    #[default]
+    Warp,
+    /// From selvedge to selvedge: across a texture.
+    Weft,
+}
+
+impl Grain {
+    /// Index into arrays of one entry a direction.
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+}
+
 /// A spring between two particles.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spring {
     /// Index of the one particle.
     pub a: u32,
@@ -36,6 +53,64 @@ pub struct Spring {
     pub b: u32,
     /// Rest length, m.
     pub rest: f32,
+    /// How much it carries of a sheet's [`Moduli`](super::Moduli), no unit: its stiffness in N/m is the sum of these
+    /// times Cu, Cv and G. All zero for a spring that has no cell beside it.
+    pub share: [f32; 3],
+}
+
+impl Spring {
+    /// The direction of threads that it goes along, rather than the other.
+    pub fn grain(&self) -> Grain {
+        if self.share[0] >= self.share[1] { Grain::Warp } else { Grain::Weft }
+    }
+}
+
+/// A triangle that carries a sheet's [`Moduli`](super::Moduli) by itself: one that is in no cell.
+///
+/// The deformation takes a step along the warp to `warp[0] (xb - xa) + warp[1] (xc - xa)` for its corners a, b, c, and
+/// one along the weft likewise.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Face {
+    /// Its corners.
+    pub particles: [u32; 3],
+    /// 1/m.
+    pub warp: [f32; 2],
+    /// 1/m.
+    pub weft: [f32; 2],
+    /// Area, m².
+    pub area: f32,
+}
+
+/// A linear measure of how much a place of the cloth is bent: the sum of the weights times the positions.
+///
+/// Its energy is B/2 times the squared length of that sum less its rest. It is one of three:
+///
+/// ```text
+///   three of a thread      corners of a cell           hinge of two triangles
+///        0---2---1              0---3                        3
+///            |                  |   |                       / \\
+///            3                  2---1                      0---1
+///                                                           \\ /
+///                                                            2
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bend {
+    /// The particles. One without a weight only shows where the surface is.
+    pub particles: [u32; 4],
+    /// The weights, no unit. Their sum is zero.
+    pub weights: [f32; 4],
+    /// The sum at rest, m: along from particle 0 to particle 1, across from 2 to 3 as far as that isn't along, and normal
+    /// to both. Zero where the cloth is flat.
+    pub rest: [f32; 3],
+}
+
+/// A run of bends of one colour: no two of them share a particle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BendBatch {
+    /// Their place in [`Topology::bends`].
+    pub range: Range<usize>,
+    /// Whether [`Topology::lattice`] has them too: [`Method::Strands`](super::Method::Strands) solves them there.
+    pub woven: bool,
 }
 
 /// A run of springs of one kind and one colour: no two of them share a particle.
@@ -48,6 +123,8 @@ pub struct SpringBatch {
     /// Whether [`Topology::lattice`] or [`Topology::braids`] have them too: [`Method::Strands`](super::Method::Strands)
     /// solves them there.
     pub woven: bool,
+    /// Whether any of them carries a part of a sheet's moduli.
+    pub carries: bool,
 }
 
 /// Springs, triangles and areas of a cloth's rest shape.
@@ -59,6 +136,16 @@ pub struct Topology {
     pub springs: Vec<Spring>,
     /// The batches, in the order in which the solver visits them.
     pub batches: Vec<SpringBatch>,
+    /// The triangles that are in no cell, batch after batch.
+    pub faces: Vec<Face>,
+    /// Runs of faces of one colour, in the order in which the solver visits them.
+    pub face_batches: Vec<Range<usize>>,
+    /// All that resists bending as a sheet does, batch after batch.
+    pub bends: Vec<Bend>,
+    /// The batches, in the order in which the solver visits them.
+    pub bend_batches: Vec<BendBatch>,
+    /// Whether any bend has a rest other than zero: the cloth isn't flat.
+    pub is_curved: bool,
     /// Particles of each triangle; the order gives the side of its normal.
     pub triangles: Vec<[u32; 3]>,
     /// Area of each triangle, m².

@@ -17,7 +17,7 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::braid::Strung;
 use crate::solver::{
-    Lanes, Material, Spring, SpringBatch, SpringConstants, Topology,
+    Lanes, Material, Spring, SpringBatch, SpringConstants, SpringKind, Topology,
     lanes::{Block, apart, together},
     simd::{Instructions, LANES, Lane, SHORTEST, Vec3Wide, Vec3x8, Wide, lane},
 };
@@ -177,7 +177,7 @@ pub(in crate::solver) fn solve<'a>(
     instructions: Instructions,
 ) {
     let level = instructions.level();
-    let batches = batches.map(|batch| (batch, Scaled::new(material.spring(batch.kind), h)));
+    let batches = batches.map(|batch| (batch, Scaled::new(material.alike(batch.kind), h)));
     let batches = batches.filter(|(_, constants)| constants.acts());
     let count: usize = batches.clone().map(|(batch, _)| batch.range.len()).sum();
     if braids.is_none() && count * FEW <= lanes.order.particle_count() {
@@ -191,7 +191,7 @@ pub(in crate::solver) fn solve<'a>(
         }
         return;
     }
-    if material.springs.iter().any(|spring| spring.damping > 0.0) {
+    if SpringKind::ALL.iter().any(|&kind| material.alike(kind).damping > 0.0) {
         dispatch!(level, simd => beads.read::<_, true>(simd, lanes));
     } else {
         dispatch!(level, simd => beads.read::<_, false>(simd, lanes));
@@ -257,7 +257,7 @@ fn solve_batch<S: Simd, const DAMPED: bool>(simd: S, beads: &mut Beads, springs:
     }
     if !rest.is_empty() {
         let nobody = beads.now.len() as u32 - 1;
-        let mut springs = [Spring { a: nobody, b: nobody, rest: 0.0 }; LANES];
+        let mut springs = [Spring { a: nobody, b: nobody, ..Spring::default() }; LANES];
         springs[..rest.len()].copy_from_slice(rest);
         solve_gathered::<S, DAMPED>(simd, beads, &springs, constants);
     }
@@ -288,7 +288,7 @@ pub fn strain(position: &[Vec3A], spring: &Spring) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::{Particles, SpringKind, order::Order};
+    use crate::solver::{Elasticity, Particles, order::Order};
 
     fn pair(distance: f32) -> (Lanes, Topology) {
         let mut lanes = Lanes::default();
@@ -301,8 +301,8 @@ mod tests {
         lanes.load(&particles, Order::plain(2), Instructions::Best);
         lanes.previous = lanes.position.clone();
         let topology = Topology {
-            springs: vec![Spring { a: 0, b: 1, rest: 1.0 }],
-            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1, woven: false }],
+            springs: vec![Spring { a: 0, b: 1, rest: 1.0, ..Spring::default() }],
+            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1, woven: false, carries: false }],
             areas: vec![1.0; 2],
             ..Default::default()
         };
@@ -312,8 +312,7 @@ mod tests {
     fn solve_once(lanes: &mut Lanes, topology: &Topology, stiffness: f32, damping: f32) {
         let mut springs = [SpringConstants::default(); 3];
         springs[0] = SpringConstants { stiffness, damping };
-        let material =
-            Material { density: 1.0, springs, damping: 0.0, thickness: 0.0, friction: 0.0, drag: 0.0, lift: 0.0 };
+        let material = Material::bare(1.0, Elasticity::Springs(springs));
         solve(
             lanes,
             topology,

@@ -104,7 +104,7 @@ impl Substep<'_> {
             let Scratch { lanes, bench, pins, levels, .. } = scratch;
             levels.solve(run, lanes, pins, bench);
         }
-        let scaled = |kind| Scaled::new(self.ctx.material.spring(kind), self.h);
+        let scaled = |kind| Scaled::new(self.ctx.material.alike(kind), self.h);
         let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
         let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
         if let Some((pool, lattice)) = self.helpers {
@@ -169,7 +169,7 @@ impl Substep<'_> {
             passes: self.levels,
             tethers: self.ctx.tethers.filter(|tethers| !tethers.is_empty())?,
             slack: self.ctx.tether_slack,
-            stretch: Scaled::new(self.ctx.material.spring(SpringKind::Structural), self.h),
+            stretch: Scaled::new(self.ctx.material.alike(SpringKind::Structural), self.h),
             last: self.last,
             instructions: scratch.instructions,
         })
