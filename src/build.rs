@@ -18,6 +18,7 @@ mod lattice;
 mod levels;
 mod order;
 pub(crate) mod plan;
+mod plate;
 mod shares;
 pub(crate) mod source;
 mod springs;

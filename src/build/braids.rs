@@ -73,14 +73,20 @@ impl<'a> Plait<'a> {
             nodes: vec![[self.count as u32; LANES]; length],
             stretch: vec![Lane::default(); length],
             bend: vec![Lane::default(); length],
+            shares: vec![[Lane::default(); 3]; length],
             closed: threads.iter().any(|(_, thread)| thread.closed),
         };
         for (lane, (_, thread)) in threads.iter().enumerate() {
             for (node, &particle) in braid.nodes.iter_mut().zip(&thread.particles) {
                 node[lane] = particle;
             }
-            for (stretch, &spring) in braid.stretch.iter_mut().zip(&thread.springs) {
+            let springs = braid.stretch.iter_mut().zip(&mut braid.shares).zip(&thread.springs);
+            for ((stretch, shares), &spring) in springs {
                 stretch[lane] = self.weave(spring as usize);
+                let Spring { rest, share: [warp, weft, shear], .. } = self.springs[spring as usize].1;
+                for (lanes, part) in shares.iter_mut().zip([warp, weft, -shear]) {
+                    lanes[lane] = if rest > 0.0 { part / rest } else { 0.0 };
+                }
             }
             for (bend, &[from, _, to]) in braid.bend.iter_mut().zip(thread.particles.array_windows()) {
                 let spring = self.bends.get(&sorted(from, to)).copied();
@@ -89,6 +95,9 @@ impl<'a> Plait<'a> {
         }
         if braid.bend.iter().flatten().all(|&rest| rest == 0.0) {
             braid.bend.clear();
+        }
+        if braid.shares.as_flattened().as_flattened().iter().all(|&share| share == 0.0) {
+            braid.shares.clear();
         }
         braid
     }

@@ -6,8 +6,14 @@
 //!  down --- . ----- .       and down from there, row after row, across the level ones
 //! ```
 
-use super::{cells::Cells, grouped::Grouped};
-use crate::solver::{Lattice, Spring, SpringKind};
+use bevy::prelude::*;
+
+use super::{
+    cells::Cells,
+    grouped::Grouped,
+    plate::{ENDS, Plate},
+};
+use crate::solver::{Bend, Grain, Lattice, Spring, SpringKind, lattice::Link};
 
 /// Particles row after row, as they stand in the mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -176,13 +182,17 @@ const WAYS: [(SpringKind, (isize, isize)); 6] = [
     (SpringKind::Bend, (2, 0)),
 ];
 
-/// The lattice of the particles of a rectangle, numbered row by row, and whether each of `springs` is on it.
-pub(super) fn weave(rectangle: &Rectangle, springs: &[(SpringKind, Spring)]) -> (Lattice, Vec<bool>) {
+/// No spring.
+const NONE: u32 = u32::MAX;
+
+/// The lattice of the particles of a rectangle, numbered row by row and at `rest` (m), and whether each of `springs` is on
+/// it.
+pub(super) fn weave(rest: &[Vec3], rectangle: &Rectangle, springs: &[(SpringKind, Spring)]) -> (Lattice, Vec<bool>) {
     let Rectangle { columns, closed, particles } = rectangle;
     let (columns, closed) = (*columns, *closed);
     let place = |particle: u32| (particle as usize / columns, particle as usize % columns);
-    let mut lengths = vec![[0.0; WAYS.len()]; particles.len()];
-    let mut put = |&(kind, Spring { a, b, rest, .. }): &(SpringKind, Spring)| {
+    let mut numbers = vec![[NONE; WAYS.len()]; particles.len()];
+    let mut put = |(number, &(kind, Spring { a, b, rest, .. })): (u32, &(SpringKind, Spring))| {
         let (first, second) = (a.min(b), a.max(b));
         let (from, to) = (place(first), place(second));
         let way = (to.0 as isize - from.0 as isize, to.1 as isize - from.1 as isize);
@@ -190,18 +200,42 @@ pub(super) fn weave(rectangle: &Rectangle, springs: &[(SpringKind, Spring)]) -> 
         let (from, way) = if closes { (second, (0, 1)) } else { (first, way) };
         let known = WAYS.iter().position(|&known| known == (kind, way));
         known.is_some_and(|known| {
-            let length = &mut lengths[from as usize][known];
-            let is_new = *length == 0.0 && rest > 0.0;
+            let known = &mut numbers[from as usize][known];
+            let is_new = *known == NONE && rest > 0.0;
             if is_new {
-                *length = rest;
+                *known = number;
             }
             is_new
         })
     };
-    let woven = springs.iter().map(&mut put).collect();
-    let length = |(row, column): (usize, usize), way| {
-        let known = WAYS.iter().position(|&(_, known)| known == way);
-        known.map_or(0.0, |known| lengths[row * columns + column][known])
+    let woven = (0..).zip(springs).map(&mut put).collect();
+    let spring = |(row, column): (usize, usize), way| {
+        let known = WAYS.iter().position(|&(_, known)| known == way)?;
+        springs.get(numbers[row * columns + column][known] as usize).map(|(_, spring)| *spring)
     };
-    (Lattice::new(particles.len() / columns, columns, closed, length), woven)
+    let rows = particles.len() / columns;
+    let grain = grain_of_columns((0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))), &spring);
+    let plate = Plate::new(rest, rectangle);
+    let link = |at: (usize, usize), way: (isize, isize)| {
+        let Spring { rest, share: [warp, weft, shear], .. } = spring(at, way).unwrap_or_default();
+        let (row, column) = at;
+        let ends = |bend: Option<Bend>| bend.map_or([0.0; 2], |bend| ENDS.map(|end| bend.weights[end]));
+        let (shares, weights) = match way {
+            (0, 2) => ([0.0; 2], ends(plate.along_row((row, column + 1)))),
+            (2, 0) => ([0.0; 2], ends(plate.along_column((row + 1, column)))),
+            (1, 1) => ([shear, 0.0], ends(plate.twist(at))),
+            _ => ([warp + weft, -shear], [0.0; 2]),
+        };
+        Link { rest, shares, weights }
+    };
+    (Lattice::new(rows, columns, closed, grain, link), woven)
+}
+
+/// The direction that columns are along, rather than the other.
+fn grain_of_columns(
+    places: impl Iterator<Item = (usize, usize)>,
+    spring: impl Fn((usize, usize), (isize, isize)) -> Option<Spring>,
+) -> Grain {
+    let shares = places.filter_map(|at| spring(at, (1, 0))).map(|spring| spring.share[0] - spring.share[1]);
+    if shares.sum::<f32>() >= 0.0 { Grain::Warp } else { Grain::Weft }
 }

@@ -44,7 +44,7 @@ fn level(cloth: &Lattice, stride: usize) -> Level {
         columns.pop();
     }
     let next_column = |column: usize| columns.get(column + 1).copied().unwrap_or(cloth.columns);
-    let lattice = Lattice::new(rows.len(), columns.len(), closed, |(row, column), way| match way {
+    let lattice = Lattice::of_lengths(rows.len(), columns.len(), closed, |(row, column), way| match way {
         (0, 1) => cloth.length_along_row(rows[row], columns[column]..next_column(column)),
         (1, 0) => cloth.length_along_column(columns[column], rows[row]..rows[row + 1]),
         _ => 0.0,

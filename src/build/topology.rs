@@ -61,7 +61,8 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
     };
     let mut all: Vec<_> = links.iter().map(with_length).collect();
     shares::share_out(&rest, &cells, &warp, &mut all);
-    let woven = rectangle.filter(Rectangle::is_in_order).map(|rectangle| lattice::weave(&rectangle, &all));
+    let rectangle = rectangle.filter(Rectangle::is_in_order);
+    let woven = rectangle.as_ref().map(|rectangle| lattice::weave(&rest, rectangle, &all));
     let (lattice, braids, woven) = match woven {
         Some((lattice, woven)) => (Some(lattice), Vec::new(), woven),
         None => {

@@ -16,6 +16,9 @@ pub struct Braid {
     /// Rest lengths from a node to the one after the next, m; zero where there is no spring. Empty where there is none
     /// at all.
     pub bend: Vec<Lane>,
+    /// Parts of Cu, Cv and -G that each spring from a node to the next has of a sheet, over its rest length, 1/m. Empty
+    /// where none has any.
+    pub shares: Vec<[Lane; 3]>,
     /// Whether the last node of each thread is joined to its first: threads are rings.
     pub closed: bool,
 }

@@ -2,8 +2,11 @@
 
 pub(super) mod anchor;
 pub(super) mod braid;
+pub(super) mod curl;
+pub(super) mod curvature;
 pub(super) mod diagonal;
 pub mod grab;
+pub(super) mod law;
 pub(super) mod level;
 pub mod spring;
 pub(super) mod strand;

@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use super::{
+    Grain,
     order::Order,
     simd::{LANES, Lane},
 };
@@ -26,6 +27,24 @@ pub struct Lattice {
     pub falling: Vec<Lane>,
     /// Rest lengths of the diagonals from the next column to the next row, m.
     pub rising: Vec<Lane>,
+    /// Parts of G that both diagonals of a cell have, no unit.
+    pub cell_shares: Vec<Lane>,
+    /// Weights of the twist of each cell: its energy is B/2 times the squared length of the weight times the sum of the
+    /// places of two opposite corners less those of the others.
+    pub twist: Vec<Lane>,
+    /// What bends and twists are at rest, where the cloth isn't flat.
+    pub curl: Option<Box<Curl>>,
+}
+
+/// What the bends and twists of a lattice are at rest, as it stands in [`Bend::rest`](super::Bend::rest), m.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curl {
+    /// At each node of the rows: for each eight columns, one entry a row.
+    pub along_rows: Vec<[Lane; 3]>,
+    /// At each node of the columns.
+    pub along_columns: Vec<[Lane; 3]>,
+    /// In each cell.
+    pub twist: Vec<[Lane; 3]>,
 }
 
 /// The springs along all rows or along all columns.
@@ -42,42 +61,110 @@ pub struct Threads {
     pub stretch: Vec<Lane>,
     /// Rest lengths from a node to the one after the next, m.
     pub bend: Vec<Lane>,
+    /// Which threads of a sheet they are.
+    pub grain: Grain,
+    /// Parts of C and of -G that each spring from a node to the next has of a sheet, over its rest length, 1/m.
+    pub shares: Vec<[Lane; 2]>,
+    /// Weights with which the nodes before and after count in the bend at each node, no unit.
+    pub curvature: Vec<[Lane; 2]>,
+}
+
+/// What joins a particle of a lattice to another, or bends there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Link {
+    /// Rest length, m; zero for none.
+    pub rest: f32,
+    /// Parts of C and -G along a thread, and that of G in a cell, no unit.
+    pub shares: [f32; 2],
+    /// Weights of the bend in the middle of the way from two steps along a thread, or of the cell's twist, no unit.
+    pub weights: [f32; 2],
 }
 
 impl Lattice {
-    /// The lattice of `rows` x `columns` particles whose springs have the rest lengths (m) that `spring` gives from the
-    /// particle at (row, column) by so many rows and columns; zero for no spring. Where `closed`, rows are rings: the
-    /// next column of the last is the first.
+    /// The lattice of `rows` x `columns` particles that are joined as `link` says from the particle at (row, column) by so
+    /// many rows and columns. Where `closed`, rows are rings: the next column of the last is the first. `grain` is what
+    /// columns are.
     pub fn new(
         rows: usize,
         columns: usize,
         closed: bool,
-        spring: impl Fn((usize, usize), (isize, isize)) -> f32,
+        grain: Grain,
+        link: impl Fn((usize, usize), (isize, isize)) -> Link,
     ) -> Self {
         let has = |(row, column): (usize, usize)| row < rows && column < columns;
-        let rest = |from: (usize, usize), way: (isize, isize)| {
+        let link = |from: (usize, usize), way: (isize, isize)| {
             let to = from.0.checked_add_signed(way.0).zip(from.1.checked_add_signed(way.1));
             let closes = closed && from.1 + 1 == columns && way == (0, 1);
-            if has(from) && (closes || to.is_some_and(has)) { spring(from, way) } else { 0.0 }
+            if has(from) && (closes || to.is_some_and(has)) { link(from, way) } else { Link::default() }
         };
         let width = columns.next_multiple_of(LANES);
-        let along_rows = |way| -> Vec<Lane> {
-            let nodes = (0..rows).step_by(LANES).flat_map(|row| (0..width).map(move |column| (row, column)));
-            nodes.map(|(row, column)| core::array::from_fn(|l| rest((row + l, column), way))).collect()
+        let of_rows = || (0..rows).step_by(LANES).flat_map(move |row| (0..width).map(move |column| (row, column)));
+        let of_columns = || (0..columns).step_by(LANES).flat_map(move |column| (0..rows).map(move |row| (row, column)));
+        let lanes = |of: &dyn Fn(usize) -> f32| -> Lane { core::array::from_fn(of) };
+        // The bend at a node is that of the way that starts at the one before.
+        let along_rows = Threads {
+            nodes: width,
+            count: columns,
+            closed,
+            grain: grain.other(),
+            stretch: of_rows().map(|(row, c)| lanes(&|l| link((row + l, c), (0, 1)).rest)).collect(),
+            bend: of_rows().map(|(row, c)| lanes(&|l| link((row + l, c), (0, 2)).rest)).collect(),
+            shares: of_rows()
+                .map(|(row, c)| [0, 1].map(|i| lanes(&|l| link((row + l, c), (0, 1)).per_length(i))))
+                .collect(),
+            curvature: of_rows()
+                .map(|(row, c)| {
+                    let weight = |l: usize, i: usize| {
+                        c.checked_sub(1).map_or(0.0, |before| link((row + l, before), (0, 2)).weights[i])
+                    };
+                    [0, 1].map(|i| lanes(&|l| weight(l, i)))
+                })
+                .collect(),
         };
-        let along_columns = |way, shift| -> Vec<Lane> {
-            let nodes = (0..columns).step_by(LANES).flat_map(|column| (0..rows).map(move |row| (row, column)));
-            nodes.map(|(row, column)| core::array::from_fn(|l| rest((row, column + l + shift), way))).collect()
+        let along_columns = Threads {
+            nodes: rows,
+            count: rows,
+            closed: false,
+            grain,
+            stretch: of_columns().map(|(r, column)| lanes(&|l| link((r, column + l), (1, 0)).rest)).collect(),
+            bend: of_columns().map(|(r, column)| lanes(&|l| link((r, column + l), (2, 0)).rest)).collect(),
+            shares: of_columns()
+                .map(|(r, column)| [0, 1].map(|i| lanes(&|l| link((r, column + l), (1, 0)).per_length(i))))
+                .collect(),
+            curvature: of_columns()
+                .map(|(r, column)| {
+                    let weight = |l: usize, i: usize| {
+                        r.checked_sub(1).map_or(0.0, |before| link((before, column + l), (2, 0)).weights[i])
+                    };
+                    [0, 1].map(|i| lanes(&|l| weight(l, i)))
+                })
+                .collect(),
         };
-        let threads = |nodes, count, closed, stretch, bend| Threads { nodes, count, closed, stretch, bend };
+        let cells = |of: &dyn Fn((usize, usize)) -> f32| -> Vec<Lane> {
+            of_columns().map(|(r, column)| lanes(&|l| of((r, column + l)))).collect()
+        };
         Self {
             rows,
             columns,
-            along_rows: threads(width, columns, closed, along_rows((0, 1)), along_rows((0, 2))),
-            along_columns: threads(rows, rows, false, along_columns((1, 0), 0), along_columns((2, 0), 0)),
-            falling: along_columns((1, 1), 0),
-            rising: along_columns((1, -1), 1),
+            along_rows,
+            along_columns,
+            falling: cells(&|at| link(at, (1, 1)).rest),
+            rising: cells(&|(row, column)| link((row, column + 1), (1, -1)).rest),
+            cell_shares: cells(&|at| link(at, (1, 1)).shares[0]),
+            twist: cells(&|at| link(at, (1, 1)).weights[0]),
+            curl: None,
         }
+    }
+
+    /// The same with threads of these lengths (m) and nothing else.
+    pub fn of_lengths(
+        rows: usize,
+        columns: usize,
+        closed: bool,
+        length: impl Fn((usize, usize), (isize, isize)) -> f32,
+    ) -> Self {
+        let link = |from, way| Link { rest: length(from, way), ..Link::default() };
+        Self::new(rows, columns, closed, Grain::Warp, link)
     }
 
     /// Length of the springs between two columns of a row, m; of a ring, up to the first again where the end is the number
@@ -93,6 +180,12 @@ impl Lattice {
 
     pub(crate) fn order(&self) -> Order {
         Order { rows: self.rows, columns: self.columns }
+    }
+}
+
+impl Link {
+    fn per_length(&self, share: usize) -> f32 {
+        if self.rest > 0.0 { self.shares[share] / self.rest } else { 0.0 }
     }
 }
 

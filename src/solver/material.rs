@@ -102,6 +102,11 @@ impl Moduli {
         warp * weft / (warp - weft).abs()
     }
 
+    /// Bending rigidity, N·m, and its damping, N·m·s.
+    pub fn rigidity(&self) -> SpringConstants {
+        SpringConstants { stiffness: self.bending, damping: self.bending * self.bend_damping }
+    }
+
     /// Stiffness of a spring at its rest length, N/m.
     pub fn of_spring(&self, spring: &Spring) -> f32 {
         let [warp, weft, shear] = spring.share;

@@ -4,7 +4,7 @@ use bevy::math::Vec3A;
 
 use super::{
     Instructions, Lanes,
-    constraint::{level::Levels, spring::Beads, tether::PinPlaces},
+    constraint::{curl::Curls, level::Levels, spring::Beads, tether::PinPlaces},
     force::wind::Air,
     lanes::Points,
     share::Bench,
@@ -31,6 +31,8 @@ pub struct Scratch {
     pub(super) beads: Beads,
     /// The coarse levels.
     pub(super) levels: Levels,
+    /// What a lattice's bends are at rest.
+    pub(super) curls: Curls,
     /// The pins that hold tethers.
     pub(super) pins: PinPlaces,
     /// What this thread needs of its own.

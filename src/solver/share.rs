@@ -11,10 +11,8 @@ use bevy::tasks::TaskPool;
 use super::{
     Instructions, Lanes, Particles,
     constraint::{
-        diagonal::{self, Seam},
+        diagonal::{self, CellYarn, Seam},
         level::{LevelRun, Levels},
-        spring::Scaled,
-        strand::Both,
         tether::{self, PinPlaces, TetherBlock},
         weave::{self, Last, Loom, Weaver},
     },
@@ -31,7 +29,7 @@ pub(super) const LARGE: usize = 10_000;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Work<'a> {
     pub weaver: Weaver<'a>,
-    pub shear: Scaled,
+    pub cells: CellYarn<'a>,
     pub last: Last,
     /// Levels that are solved already, if there are any.
     pub levels: Option<(&'a LevelRun<'a>, &'a Levels)>,
@@ -141,27 +139,27 @@ struct Cloth<'a> {
 impl Cloth<'_> {
     /// Levels, tethers, and the diagonals below even rows.
     fn begin(&self, number: usize, worker: usize) {
-        let Work { weaver: Weaver { lattice, instructions, .. }, shear, levels, tethers, pins, slack, .. } = *self.work;
+        let Work { weaver: Weaver { lattice, instructions, .. }, cells, levels, tethers, pins, slack, .. } = *self.work;
         let (band, mut run) = (self.bands[number], lock(&self.runs[number]));
         let Run { first, position, inverse_mass, .. } = &mut *run;
         if let Some((run, levels)) = levels {
             levels.move_band(run, band, position, inverse_mass, &mut lock(&self.benches[worker]).across);
         }
         tether::solve(position, inverse_mass, *first, tethers, pins, slack, instructions);
-        diagonal::solve_band(&mut run.sheet(), band, 0, lattice, shear, instructions);
+        diagonal::solve_band(&mut run.sheet(), band, 0, lattice, cells, instructions);
     }
 
     /// The diagonals below odd rows, and those to the band above: they have no particle in common.
     fn cross(&self, number: usize, worker: usize) {
-        let Work { weaver: Weaver { lattice, instructions, .. }, shear, .. } = *self.work;
+        let Work { weaver: Weaver { lattice, instructions, .. }, cells, .. } = *self.work;
         let band = self.bands[number];
-        diagonal::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, shear, instructions);
+        diagonal::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, cells, instructions);
         let Some(above) = number.checked_sub(1) else { return };
         let seam = &mut lock(&self.benches[worker]).seam;
         for (row, band) in [above, number].into_iter().enumerate() {
             seam.take(&lock(&self.runs[band]).sheet(), self.bands[band], row);
         }
-        seam.solve(band, lattice, shear, instructions);
+        seam.solve(band, lattice, cells, instructions);
         for (row, band) in [above, number].into_iter().enumerate() {
             seam.put(lock(&self.runs[band]).position, self.bands[band], row);
         }
@@ -174,7 +172,7 @@ impl Cloth<'_> {
         for (&band, run) in self.bands.iter().zip(&self.runs) {
             weaver.take_columns(&lock(run).sheet(), band, first, loom);
         }
-        weaver.solve_taken_columns::<Both>(first, loom);
+        weaver.solve_taken_columns(first, loom);
         for (&band, run) in self.bands.iter().zip(&self.runs) {
             weaver.put_columns(loom, lock(run).position, band, first);
         }
@@ -183,7 +181,7 @@ impl Cloth<'_> {
     fn solve_rows(&self, number: usize, worker: usize) {
         let loom = &mut lock(&self.benches[worker]).loom;
         let part = &mut lock(&self.runs[number]);
-        self.work.weaver.solve_rows::<Both>(&mut part.sheet(), self.bands[number], loom);
+        self.work.weaver.solve_rows(&mut part.sheet(), self.bands[number], loom);
     }
 
     fn finish(&self, number: usize) {

@@ -42,6 +42,14 @@ impl Grain {
     pub const fn index(self) -> usize {
         self as usize
     }
+
+    /// The direction across it.
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Warp => Self::Weft,
+            Self::Weft => Self::Warp,
+        }
+    }
 }
 
 /// A spring between two particles.

@@ -106,7 +106,7 @@ impl<'a> Map<'a> {
         let columns = Self::axis(self.bounds.min.x, self.bounds.max.x, nodes.x as usize);
         let rows = Self::axis(self.bounds.min.y, self.bounds.max.y, nodes.y as usize);
         let at = |row: usize, column: usize| Vec2::new(columns[column], rows[row]);
-        let lattice = Lattice::new(rows.len(), columns.len(), false, |(row, column), way| match way {
+        let lattice = Lattice::of_lengths(rows.len(), columns.len(), false, |(row, column), way| match way {
             (0, 1) => self.length(at(row, column), at(row, column + 1)),
             (1, 0) => self.length(at(row, column), at(row + 1, column)),
             _ => 0.0,

@@ -3,8 +3,9 @@
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
+    law::{AnyThreads, Laws},
     spring::Beads,
-    strand::{Both, Pack},
+    strand::{Pack, Rows, Springs},
     weave::{Loom, Yarn},
 };
 use crate::solver::{
@@ -41,8 +42,8 @@ fn solve_braids<S: Simd, const DAMPED: bool>(
     yarn: Yarn,
     Loom { rows, position, previous, inverse_mass }: &mut Loom,
 ) {
-    for Braid { nodes, stretch, bend, closed } in braids {
-        for (j, particles) in nodes.iter().enumerate() {
+    for braid in braids {
+        for (j, particles) in braid.nodes.iter().enumerate() {
             let end = beads.end::<S, DAMPED>(simd, particles);
             end.position.store(&mut position[j]);
             if DAMPED {
@@ -50,20 +51,40 @@ fn solve_braids<S: Simd, const DAMPED: bool>(
             }
             inverse_mass[j] = end.inverse_mass.into();
         }
-        let (count, stride) = (nodes.len(), nodes.len());
-        let mut pack = Pack { position, previous, inverse_mass, stride };
-        if let Some(constants) = yarn.bend.filter(|_| !bend.is_empty()) {
-            pack.solve_bends::<S, f32x8<S>, DAMPED>(simd, count, bend, constants);
-        }
-        if yarn.stretch.acts() {
-            if *closed {
-                pack.solve::<S, f32x8<S>, Both, DAMPED, true>(simd, count, stretch, yarn, rows);
-            } else {
-                pack.solve::<S, f32x8<S>, Both, DAMPED, false>(simd, count, stretch, yarn, rows);
+        let mut pack = Pack { position, previous, inverse_mass, stride: braid.nodes.len() };
+        match yarn {
+            Yarn::Alike { stretch, bend } => {
+                if let Some(bend) = bend.filter(|_| !braid.bend.is_empty()) {
+                    pack.solve_bends::<S, f32x8<S>, DAMPED>(simd, braid.nodes.len(), &braid.bend, bend);
+                }
+                if stretch.acts() {
+                    solve_stretch::<S, _, DAMPED>(simd, &mut pack, braid, stretch, rows);
+                }
             }
+            Yarn::Sheet { stretch: gradings, .. } if !braid.shares.is_empty() => {
+                let laws = AnyThreads { shares: &braid.shares, gradings };
+                solve_stretch::<S, _, DAMPED>(simd, &mut pack, braid, laws, rows);
+            }
+            Yarn::Sheet { .. } | Yarn::Pulling(_) => {}
         }
-        for (j, particles) in nodes.iter().enumerate() {
+        for (j, particles) in braid.nodes.iter().enumerate() {
             beads.put(particles, Vec3x8::load(simd, &position[j]), lane(simd, &inverse_mass[j]));
         }
+    }
+}
+
+#[inline(always)]
+fn solve_stretch<S: Simd, L: Laws<S, f32x8<S>>, const DAMPED: bool>(
+    simd: S,
+    pack: &mut Pack,
+    braid: &Braid,
+    laws: L,
+    rows: &mut Rows,
+) {
+    let (count, springs) = (braid.nodes.len(), Springs { rest: &braid.stretch, laws });
+    if braid.closed {
+        pack.solve::<S, f32x8<S>, L, DAMPED, true>(simd, count, springs, rows);
+    } else {
+        pack.solve::<S, f32x8<S>, L, DAMPED, false>(simd, count, springs, rows);
     }
 }

@@ -9,39 +9,73 @@
 //!
 //! Those between two rows have no particle in common with those between the next two but one. They aren't threads: each
 //! is solved for itself.
+//!
+//! The cells of a sheet also resist being twisted: with the energy B/2 |T|² of T = t (x00 + x11 - x01 - x10), as
+//! [`Bend`](crate::solver::Bend) has it. It is linear in the positions, and so is its answer.
 
-use fearless_simd::{dispatch, prelude::*};
+use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    spring::{End, Scaled, solve_abreast},
+    curl::Curls,
+    law::Scaled,
+    spring::{End, solve_abreast},
     weave::Sheet,
 };
 use crate::solver::{
-    Lattice,
+    Elasticity, Lattice, Material, SpringConstants, SpringKind,
     lanes::Block,
     order::Band,
     simd::{Instructions, Lane, Vec3x8, lane},
 };
 
+/// What cells resist.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct CellYarn<'a> {
+    /// The springs along diagonals: those of the whole stiffness.
+    pub spring: Scaled,
+    /// Whether cells have a part of it, as those of a sheet do, instead of all being alike.
+    pub is_sheet: bool,
+    /// B h² and its damping. None where nothing resists being twisted.
+    pub rigidity: Option<Scaled>,
+    /// What twists are at rest.
+    pub curls: &'a Curls,
+}
+
+impl<'a> CellYarn<'a> {
+    pub fn new(material: &Material, h: f32, curls: &'a Curls) -> Self {
+        match &material.elasticity {
+            Elasticity::Springs(constants) => {
+                let spring = Scaled::new(constants[SpringKind::Shear.index()], h);
+                Self { spring, is_sheet: false, rigidity: None, curls }
+            }
+            Elasticity::Moduli(moduli) => {
+                let shear = SpringConstants { stiffness: moduli.shear, damping: moduli.shear * moduli.stretch_damping };
+                let rigidity = Some(Scaled::new(moduli.rigidity(), h)).filter(Scaled::acts);
+                Self { spring: Scaled::new(shear, h), is_sheet: true, rigidity, curls }
+            }
+        }
+    }
+}
+
 /// Solves the diagonals of all cells: those between an even row and the next, then those below.
 pub(in crate::solver) fn solve(
     sheet: &mut Sheet,
     lattice: &Lattice,
-    constants: Scaled,
+    yarn: CellYarn,
     seam: &mut Seam,
     instructions: Instructions,
 ) {
     let bands = lattice.order().bands();
     for parity in [0, 1] {
         for band in bands.clone() {
-            solve_band(&mut sheet.band(band), band, parity, lattice, constants, instructions);
+            solve_band(&mut sheet.band(band), band, parity, lattice, yarn, instructions);
         }
     }
     for (upper, lower) in bands.clone().zip(bands.skip(1)) {
         for (band, row) in [(upper, 0), (lower, 1)] {
             seam.take(&sheet.band(band), band, row);
         }
-        seam.solve(lower, lattice, constants, instructions);
+        seam.solve(lower, lattice, yarn, instructions);
         for (band, row) in [(upper, 0), (lower, 1)] {
             seam.put(sheet.band(band).position, band, row);
         }
@@ -54,10 +88,10 @@ pub(in crate::solver) fn solve_band(
     band: Band,
     parity: usize,
     lattice: &Lattice,
-    constants: Scaled,
+    yarn: CellYarn,
     instructions: Instructions,
 ) {
-    solve_pairs(sheet, band.rows, band.first, parity, lattice, constants, instructions);
+    solve_pairs(sheet, band.rows, band.first, parity, lattice, yarn, instructions);
 }
 
 /// The same in a sheet of so many `rows`, whose `first` is its number in the lattice.
@@ -67,15 +101,26 @@ fn solve_pairs(
     first: usize,
     parity: usize,
     lattice: &Lattice,
-    constants: Scaled,
+    yarn: CellYarn,
     instructions: Instructions,
 ) {
     let level = instructions.level();
     let some = (parity..rows - 1).step_by(2);
-    if constants.c > 0.0 {
-        dispatch!(level, simd => solve_eights::<_, true>(simd, sheet, rows, first, some, lattice, constants));
-    } else if constants.k > 0.0 {
-        dispatch!(level, simd => solve_eights::<_, false>(simd, sheet, rows, first, some, lattice, constants));
+    let pairs = RowPairs { lattice, rows, first, yarn };
+    if let Some(rigidity) = yarn.rigidity {
+        let some = some.clone();
+        if rigidity.c > 0.0 {
+            dispatch!(level, simd => pairs.solve_twists::<_, true>(simd, sheet, some, rigidity));
+        } else {
+            dispatch!(level, simd => pairs.solve_twists::<_, false>(simd, sheet, some, rigidity));
+        }
+    }
+    match (yarn.is_sheet, yarn.spring.c > 0.0) {
+        _ if !yarn.spring.acts() => {}
+        (false, false) => dispatch!(level, simd => pairs.solve_diagonals::<_, false, false>(simd, sheet, some)),
+        (false, true) => dispatch!(level, simd => pairs.solve_diagonals::<_, false, true>(simd, sheet, some)),
+        (true, false) => dispatch!(level, simd => pairs.solve_diagonals::<_, true, false>(simd, sheet, some)),
+        (true, true) => dispatch!(level, simd => pairs.solve_diagonals::<_, true, true>(simd, sheet, some)),
     }
 }
 
@@ -104,10 +149,10 @@ impl Seam {
     }
 
     /// Solves the diagonals above the band `below`.
-    pub fn solve(&mut self, below: Band, lattice: &Lattice, constants: Scaled, instructions: Instructions) {
+    pub fn solve(&mut self, below: Band, lattice: &Lattice, yarn: CellYarn, instructions: Instructions) {
         let Self { position, previous, inverse_mass } = self;
         let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
-        solve_pairs(&mut sheet, 2, below.first - 1, 0, lattice, constants, instructions);
+        solve_pairs(&mut sheet, 2, below.first - 1, 0, lattice, yarn, instructions);
     }
 
     /// Puts a row back.
@@ -122,60 +167,125 @@ impl Seam {
     }
 }
 
-#[inline(always)]
-fn solve_eights<S: Simd, const DAMPED: bool>(
-    simd: S,
-    sheet: &mut Sheet,
+/// Rows of a sheet that has so many `rows`, the `first` of them having that number in the lattice.
+struct RowPairs<'a> {
+    lattice: &'a Lattice,
     rows: usize,
     first: usize,
-    some: impl Iterator<Item = usize>,
-    lattice: &Lattice,
-    constants: Scaled,
-) {
-    for row in some {
-        let falling = (&lattice.falling, [row, row + 1]);
-        let rising = (&lattice.rising, [row + 1, row]);
-        // By turns, so that what comes first doesn't set the cloth spinning.
-        let pairs = if (first + row) % 4 < 2 { [falling, rising] } else { [rising, falling] };
-        for (rest, ends) in pairs {
-            let rest = rest[first + row..].iter().step_by(lattice.rows);
-            solve_row_pair::<S, DAMPED>(simd, sheet, rest, ends, rows, constants);
-        }
-    }
+    yarn: CellYarn<'a>,
 }
 
-/// Solves the springs from each particle of one row to the next column of another. `rest` has their lengths (m) for each
-/// block of the row, and `rows` is the number of all.
-#[inline(always)]
-fn solve_row_pair<'a, S: Simd, const DAMPED: bool>(
-    simd: S,
-    sheet: &mut Sheet,
-    rest: impl Iterator<Item = &'a Lane>,
-    [from, to]: [usize; 2],
-    rows: usize,
-    constants: Scaled,
-) {
-    let end = |sheet: &Sheet, at: usize| {
+impl RowPairs<'_> {
+    /// What the lattice has for each block of a row.
+    fn of_row<'b, T>(&self, all: &'b [T], row: usize) -> impl Iterator<Item = &'b T> + use<'b, T> {
+        all.get(self.first + row..).unwrap_or_default().iter().step_by(self.lattice.rows)
+    }
+
+    #[inline(always)]
+    fn end<S: Simd, const DAMPED: bool>(&self, simd: S, sheet: &Sheet, at: usize) -> End<f32x8<S>> {
         let position = Vec3x8::load(simd, &sheet.position[at]);
         let previous = if DAMPED { Vec3x8::load(simd, &sheet.previous[at]) } else { position };
         End { position, previous, inverse_mass: lane(simd, &sheet.inverse_mass[at]) }
-    };
-    let count = sheet.position.len();
-    let mut here = end(sheet, to);
-    // The first particle of the row is nobody's next one.
-    let mut moved_before = here.position.ahead(here.position);
-    for (at, rest) in (0..count).step_by(rows).zip(rest) {
-        // After the last block comes nobody: there are no springs to it.
-        let next = end(sheet, (at + rows + to).min(count - rows + to));
-        let ahead = End {
-            position: here.position.ahead(next.position),
-            previous: if DAMPED { here.previous.ahead(next.previous) } else { here.position },
-            inverse_mass: here.inverse_mass.slide::<1>(next.inverse_mass),
-        };
-        let rest = lane(simd, rest);
-        let [a, b] = solve_abreast::<_, _, DAMPED>(simd, end(sheet, at + from), ahead, rest, constants);
-        a.store(&mut sheet.position[at + from]);
-        moved_before.behind(b).store(&mut sheet.position[at + to]);
-        (here, moved_before) = (next, b);
+    }
+
+    /// Solves the diagonals below `some` rows.
+    #[inline(always)]
+    fn solve_diagonals<S: Simd, const SHEET: bool, const DAMPED: bool>(
+        &self,
+        simd: S,
+        sheet: &mut Sheet,
+        some: impl Iterator<Item = usize>,
+    ) {
+        for row in some {
+            let falling = (&*self.lattice.falling, [row, row + 1]);
+            let rising = (&*self.lattice.rising, [row + 1, row]);
+            // By turns, so that what comes first doesn't set the cloth spinning.
+            let pairs = if (self.first + row) % 4 < 2 { [falling, rising] } else { [rising, falling] };
+            for (rest, ends) in pairs {
+                self.solve_row_pair::<S, SHEET, DAMPED>(simd, sheet, row, rest, ends);
+            }
+        }
+    }
+
+    /// Solves the springs from each particle of one row to the next column of another. `rest` has their lengths, m.
+    #[inline(always)]
+    fn solve_row_pair<S: Simd, const SHEET: bool, const DAMPED: bool>(
+        &self,
+        simd: S,
+        sheet: &mut Sheet,
+        row: usize,
+        rest: &[Lane],
+        [from, to]: [usize; 2],
+    ) {
+        let (count, spring) = (sheet.position.len(), self.yarn.spring);
+        let mut here = self.end::<S, DAMPED>(simd, sheet, to);
+        // The first particle of the row is nobody's next one.
+        let mut moved_before = here.position.ahead(here.position);
+        let of_blocks = self.of_row(rest, row).zip(self.of_row(&self.lattice.cell_shares, row));
+        for (at, (rest, share)) in (0..count).step_by(self.rows).zip(of_blocks) {
+            // After the last block comes nobody: there are no springs to it.
+            let next = self.end::<S, DAMPED>(simd, sheet, (at + self.rows + to).min(count - self.rows + to));
+            let ahead = End {
+                position: here.position.ahead(next.position),
+                previous: if DAMPED { here.previous.ahead(next.previous) } else { here.position },
+                inverse_mass: here.inverse_mass.slide::<1>(next.inverse_mass),
+            };
+            let (end, rest) = (self.end::<S, DAMPED>(simd, sheet, at + from), lane(simd, rest));
+            let [a, b] = if SHEET {
+                let share = lane(simd, share);
+                solve_abreast::<_, _, DAMPED>(simd, end, ahead, rest, [share * spring.k, share * spring.c])
+            } else {
+                solve_abreast::<_, _, DAMPED>(simd, end, ahead, rest, spring)
+            };
+            a.store(&mut sheet.position[at + from]);
+            moved_before.behind(b).store(&mut sheet.position[at + to]);
+            (here, moved_before) = (next, b);
+        }
+    }
+
+    /// Solves the twists of the cells below `some` rows, all cells of a row at once.
+    #[inline(always)]
+    fn solve_twists<S: Simd, const DAMPED: bool>(
+        &self,
+        simd: S,
+        sheet: &mut Sheet,
+        some: impl Iterator<Item = usize>,
+        rigidity: Scaled,
+    ) {
+        let count = sheet.position.len();
+        let one = f32x8::splat(simd, 1.0);
+        let nothing = Vec3x8::splat(simd, [0.0; 3]);
+        // Each corner is in two of the cells that are solved at once: they share its mass.
+        let total = 2.0 * (rigidity.k + rigidity.c);
+        for row in some {
+            let ends =
+                |sheet: &Sheet, at: usize| [row, row + 1].map(|row| self.end::<S, DAMPED>(simd, sheet, at + row));
+            let mut curls = self.of_row(self.yarn.curls.of_cells(0), row);
+            let mut here = ends(sheet, 0);
+            let mut pull_before = nothing;
+            for (at, weight) in (0..count).step_by(self.rows).zip(self.of_row(&self.lattice.twist, row)) {
+                let weight = lane(simd, weight);
+                let next = ends(sheet, (at + self.rows).min(count - self.rows));
+                // From a corner to the one below, and how that changes from column to column.
+                let down = here[0].position - here[1].position;
+                let twist = (down - down.ahead(next[0].position - next[1].position)) * weight;
+                let curl = curls.next().map_or(nothing, |curl| Vec3x8::load(simd, curl));
+                let mut right = (twist - curl) * f32x8::splat(simd, -rigidity.k);
+                if DAMPED {
+                    let was = here[0].previous - here[1].previous;
+                    let way = twist - (was - was.ahead(next[0].previous - next[1].previous)) * weight;
+                    right = right - way * f32x8::splat(simd, rigidity.c);
+                }
+                let masses = here[0].inverse_mass + here[1].inverse_mass;
+                let next_masses = next[0].inverse_mass + next[1].inverse_mass;
+                let masses = masses + masses.slide::<1>(next_masses);
+                let pull = right * (weight / (masses * (weight * weight) * total + one));
+                let by = pull - pull_before.behind(pull);
+                let [above, below] = here;
+                (above.position + by * above.inverse_mass).store(&mut sheet.position[at + row]);
+                (below.position - by * below.inverse_mass).store(&mut sheet.position[at + row + 1]);
+                (here, pull_before) = (next, pull);
+            }
+        }
     }
 }

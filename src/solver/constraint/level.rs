@@ -19,8 +19,8 @@ use bevy::math::Vec3A;
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    spring::Scaled,
-    strand::Pull,
+    curl::Curls,
+    law::{Pull, Scaled},
     tether::{self, PinPlaces, TetherBlock},
     weave::{self, Last, Loom, Sheet, Weaver, Yarn},
 };
@@ -195,10 +195,10 @@ impl Nodes {
         tether::solve(position, &self.inverse_mass, 0, tethers, pins, run.slack, run.instructions);
         let mut sheet =
             Sheet { position, previous: &self.way.0, inverse_mass: &self.inverse_mass, row_masses: &self.row_masses };
-        let yarn =
-            Yarn { stretch: Scaled { c: 0.0, ..run.stretch }, bend: None, give: 1.0 + (run.slack - TAUTER).max(0.0) };
-        let weaver = Weaver { lattice: &level.lattice, yarn, instructions: run.instructions };
-        weaver.solve::<Pull>(&mut sheet, run.last, loom);
+        let spring = Scaled { c: 0.0, ..run.stretch };
+        let yarn = Yarn::Pulling(Pull { spring, give: 1.0 + (run.slack - TAUTER).max(0.0) });
+        let weaver = Weaver { lattice: &level.lattice, yarn, curls: &Curls::FLAT, instructions: run.instructions };
+        weaver.solve(&mut sheet, run.last, loom);
     }
 
     /// Works out how far the nodes went.

@@ -15,30 +15,15 @@
 use bevy::math::Vec3A;
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
-use super::braid::Strung;
+use super::{
+    braid::Strung,
+    law::{Law, Scaled},
+};
 use crate::solver::{
     Lanes, Material, Spring, SpringBatch, SpringConstants, SpringKind, Topology,
     lanes::{Block, apart, together},
     simd::{Instructions, LANES, Lane, SHORTEST, Vec3Wide, Vec3x8, Wide, lane},
 };
-
-/// k h² and c h of springs in a substep of h seconds, kg.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Scaled {
-    pub k: f32,
-    pub c: f32,
-}
-
-impl Scaled {
-    pub fn new(constants: SpringConstants, h: f32) -> Self {
-        Self { k: constants.stiffness * h * h, c: constants.damping * h }
-    }
-
-    /// Whether such springs do anything.
-    pub fn acts(&self) -> bool {
-        self.k + self.c > 0.0
-    }
-}
 
 /// Springs are few where there are so many particles for each: going to the beads and back would take longer.
 const FEW: usize = 4;
@@ -60,17 +45,20 @@ pub(in crate::solver) fn solve_abreast<S: Simd, F: Wide<S>, const DAMPED: bool>(
     a: End<F>,
     b: End<F>,
     rest: F,
-    Scaled { k, c }: Scaled,
+    law: impl Law<S, F>,
 ) -> [Vec3Wide<F>; 2] {
     let along = b.position - a.position;
     let squared = along.dot(along);
     let length = squared.sqrt().max(F::splat(simd, SHORTEST));
+    let [k, c] = law.scaled(simd, rest, length);
     let mut push = (rest - length) * k;
+    let mut total = k;
     if DAMPED {
         // Along the spring: n·Δ = along·Δ / length.
         push -= along.dot(along - (b.previous - a.previous)) * c / length;
+        total += c;
     }
-    let per_length = push / (length * ((a.inverse_mass + b.inverse_mass) * (k + c) + 1.0));
+    let per_length = push / (length * ((a.inverse_mass + b.inverse_mass) * total + 1.0));
     let none = F::splat(simd, 0.0);
     let per_length = rest.simd_gt(none).select(per_length, none);
     [a.position - along * (per_length * a.inverse_mass), b.position + along * (per_length * b.inverse_mass)]

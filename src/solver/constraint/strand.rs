@@ -9,13 +9,13 @@
 //! tridiagonal, and Thomas' algorithm solves it in one pass there and one back. A pull at one end is felt at the other
 //! within one substep: that is what sweeping over the springs takes hundreds of iterations for.
 //!
-//! Row j, multiplied by |dj| on both sides so that directions needn't be normalised, with mu = lambda / |d| and
-//! a = 1/(k h² + c h):
+//! Row j, multiplied by |dj| on both sides so that directions needn't be normalised and by t = k h² + c h so that neither
+//! a stiffness of zero nor an infinite one needs a special case, with mu = lambda / |d|, here without damping:
 //!
-//! -wj d(j-1)·dj mu(j-1) + |dj|² (wj + w(j+1) + a) mu(j) - w(j+1) dj·d(j+1) mu(j+1) = |dj| (Lj - |dj|)
+//! -tj wj d(j-1)·dj mu(j-1) + |dj|² (tj (wj + w(j+1)) + 1) mu(j) - tj w(j+1) dj·d(j+1) mu(j+1) = tj |dj| (Lj - |dj|)
 //!
-//! The matrix is Gram's of the directions plus a positive diagonal: elimination needs no pivoting. Particle j moves by
-//! wj (d(j-1) mu(j-1) - dj mu(j)).
+//! But for the factors t, the matrix is Gram's of the directions plus a positive diagonal: elimination needs no pivoting.
+//! Particle j moves by wj (d(j-1) mu(j-1) - dj mu(j)).
 //!
 //! The directions are those before the move. A taut spring also pulls across, as much as it turns; taken from before the
 //! move that pull overshoots, and flips light particles from side to side, as soon as w h² T/L is more than 1/3 for a
@@ -33,8 +33,8 @@
 use fearless_simd::prelude::*;
 
 use super::{
-    spring::{End, Scaled, solve_abreast},
-    weave::Yarn,
+    law::{Law, Laws, Scaled},
+    spring::{End, solve_abreast},
 };
 use crate::solver::{
     lanes::Block,
@@ -57,50 +57,39 @@ pub(in crate::solver) struct Pack<'a> {
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Rows {
     /// The right side, over the pivot.
-    right: Vec<Lane>,
-    /// The factor below the diagonal.
-    lower: Vec<Lane>,
+    pub(super) right: Vec<Lane>,
+    /// The entry of the row before in the column of this one, over the pivot.
+    pub(super) upper: Vec<Lane>,
     /// The entry in the column of the spring that closes a ring, over the pivot.
     border: Vec<Lane>,
+    /// Of bends: the right side over the pivot. The factors below the diagonal stand in `right` and `upper` then.
+    pub(super) bends: Vec<Block>,
 }
 
 impl Rows {
     /// Makes room for as many nodes.
     pub fn make_room(&mut self, count: usize) {
-        for lanes in [&mut self.right, &mut self.lower, &mut self.border] {
+        for lanes in [&mut self.right, &mut self.upper, &mut self.border] {
             lanes.resize(lanes.len().max(count), Lane::default());
         }
+        self.bends.resize(self.bends.len().max(count), Block::default());
     }
 }
 
-/// A spring's row of the system: its direction, its diagonal entry and its right side.
-struct Spring<F> {
+/// The springs of threads side by side from each node to the next.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Springs<'a, L> {
+    /// Rest lengths, m, one for each node; where it is zero, there is no spring.
+    pub rest: &'a [Lane],
+    pub laws: L,
+}
+
+/// A spring's row of the system: its direction, its factor t on both sides, its diagonal entry and its right side.
+struct Row<F> {
     along: Vec3Wide<F>,
+    factor: F,
     diagonal: F,
     right: F,
-}
-
-/// Which side of its rest length a spring acts on.
-pub(in crate::solver) trait Side {
-    /// Whether slack springs are without effect.
-    const ONLY_PULLS: bool;
-    /// Whether taut springs pull along the direction that they have after the move.
-    const TURNS: bool = !Self::ONLY_PULLS;
-}
-
-/// Springs push and pull.
-pub(in crate::solver) struct Both;
-
-/// Springs pull where they are too long, and do nothing else: for levels, whose nodes are heavy and far apart, so that
-/// they turn little.
-pub(in crate::solver) struct Pull;
-
-impl Side for Both {
-    const ONLY_PULLS: bool = false;
-}
-
-impl Side for Pull {
-    const ONLY_PULLS: bool = true;
 }
 
 impl Pack<'_> {
@@ -112,66 +101,67 @@ impl Pack<'_> {
     }
 
     /// Solves the springs from each of `count` nodes to the next, and of a `CLOSED` ring the one from the last to the
-    /// first. `rest` has the springs' rest lengths in m, one for each node; where it is zero, there is no spring.
+    /// first.
     #[inline(always)]
-    pub fn solve<S: Simd, F: Wide<S>, D: Side, const DAMPED: bool, const CLOSED: bool>(
+    pub fn solve<S: Simd, F: Wide<S>, L: Laws<S, F>, const DAMPED: bool, const CLOSED: bool>(
         &mut self,
         simd: S,
         count: usize,
-        rest: &[Lane],
-        yarn: Yarn,
+        springs: Springs<L>,
         rows: &mut Rows,
     ) {
-        let closing = self.eliminate::<S, F, D, DAMPED, CLOSED>(simd, count, rest, yarn, rows);
-        self.substitute::<S, F, D, CLOSED>(simd, count, rows, closing);
+        let closing = self.eliminate::<S, F, L, DAMPED, CLOSED>(simd, count, springs, rows);
+        self.substitute::<S, F, L, CLOSED>(simd, count, rows, closing);
     }
 
     /// From the first node to the last.
     #[inline(always)]
-    fn eliminate<S: Simd, F: Wide<S>, D: Side, const DAMPED: bool, const CLOSED: bool>(
+    fn eliminate<S: Simd, F: Wide<S>, L: Laws<S, F>, const DAMPED: bool, const CLOSED: bool>(
         &self,
         simd: S,
         count: usize,
-        rest: &[Lane],
-        yarn: Yarn,
+        springs: Springs<L>,
         rows: &mut Rows,
-    ) -> Spring<F> {
+    ) -> Row<F> {
         let stride = self.stride;
         let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
         let last = count - 1;
         let first = self.end::<S, F, DAMPED>(simd, 0);
-        let mut closing = Spring { along: Vec3Wide::splat(simd, [0.0; 3]), diagonal: one, right: none };
+        let mut closing = Row { along: Vec3Wide::splat(simd, [0.0; 3]), factor: none, diagonal: one, right: none };
         let mut border = none;
         if CLOSED {
             let ends = [self.end::<S, F, DAMPED>(simd, last), first];
-            closing = spring::<S, F, D, DAMPED>(simd, ends, F::load(simd, rest, last, stride), yarn);
+            closing = springs.row::<S, F, DAMPED>(simd, ends, last, stride);
         }
         let mut here = first;
         let mut before = Vec3Wide::splat(simd, [0.0; 3]);
-        let (mut inverse_pivot, mut right) = (none, none);
+        let (mut inverse_pivot, mut right, mut factor_before) = (none, none, none);
         for j in 0..last {
             let next = self.end::<S, F, DAMPED>(simd, j + 1);
-            let spring = spring::<S, F, D, DAMPED>(simd, [here, next], F::load(simd, rest, j, stride), yarn);
-            let below = here.inverse_mass * before.dot(spring.along);
-            let lower = below * inverse_pivot;
-            inverse_pivot = one / (spring.diagonal - below * lower);
-            right = spring.right + lower * right;
+            let row = springs.row::<S, F, DAMPED>(simd, [here, next], j, stride);
+            let shared = here.inverse_mass * before.dot(row.along);
+            let over_pivot = shared * inverse_pivot;
+            // Of this row in the column before, and of the row before in this column.
+            let (lower, upper) = (over_pivot * row.factor, over_pivot * factor_before);
+            inverse_pivot = one / (row.diagonal - lower * (shared * factor_before));
+            right = row.right + lower * right;
             (right * inverse_pivot).store(&mut rows.right, j, stride);
-            lower.store(&mut rows.lower, j, stride);
+            upper.store(&mut rows.upper, j, stride);
             if CLOSED {
-                border *= lower;
+                border *= upper;
                 if j == 0 {
-                    border -= first.inverse_mass * closing.along.dot(spring.along);
+                    border -= first.inverse_mass * closing.along.dot(row.along);
                 }
                 if j + 1 == last {
-                    border -= next.inverse_mass * closing.along.dot(spring.along);
+                    border -= next.inverse_mass * closing.along.dot(row.along);
                 }
                 let over_pivot = border * inverse_pivot;
-                closing.diagonal -= border * over_pivot;
-                closing.right -= over_pivot * right;
-                over_pivot.store(&mut rows.border, j, stride);
+                let in_closing = closing.factor * over_pivot;
+                closing.diagonal -= in_closing * (border * row.factor);
+                closing.right -= in_closing * right;
+                (over_pivot * row.factor).store(&mut rows.border, j, stride);
             }
-            (here, before) = (next, spring.along);
+            (here, before, factor_before) = (next, row.along, row.factor);
         }
         closing
     }
@@ -179,23 +169,23 @@ impl Pack<'_> {
     /// From the last node back to the first, which leaves each place but for its share of the one before, and on to the
     /// last again.
     #[inline(always)]
-    fn substitute<S: Simd, F: Wide<S>, D: Side, const CLOSED: bool>(
+    fn substitute<S: Simd, F: Wide<S>, L: Laws<S, F>, const CLOSED: bool>(
         &mut self,
         simd: S,
         count: usize,
         rows: &mut Rows,
-        closing: Spring<F>,
+        closing: Row<F>,
     ) {
         let stride = self.stride;
         let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
         let mut closing_mu = none;
         if CLOSED {
-            closing_mu = pulling::<S, F, D>(simd, closing.right / closing.diagonal);
+            closing_mu = pulling::<S, F, L>(simd, closing.right / closing.diagonal);
         }
         // What closes a ring, and what is pressed together, pushes along the direction that it had.
         let closing_push = closing.along * closing_mu;
         let mut push_after = closing_push;
-        let (mut mu, mut lower) = (none, none);
+        let (mut mu, mut upper) = (none, none);
         // Of the node after: tension towards it, its place but for its share of this one's, and that share.
         let (mut tension_after, mut place_after, mut share_after) = (none, closing_push, none);
         let mut here = Vec3Wide::load_at(simd, self.position, count - 1, stride);
@@ -204,15 +194,15 @@ impl Pack<'_> {
             // The first node has no spring before it but the one that closes a ring.
             let (tension, push) = if j > 0 {
                 before = Vec3Wide::load_at(simd, self.position, j - 1, stride);
-                mu = F::load(simd, &rows.right, j - 1, stride) + lower * mu;
+                mu = F::load(simd, &rows.right, j - 1, stride) + upper * mu;
                 if CLOSED {
                     mu -= F::load(simd, &rows.border, j - 1, stride) * closing_mu;
                 }
-                mu = pulling::<S, F, D>(simd, mu);
-                lower = F::load(simd, &rows.lower, j - 1, stride);
+                mu = pulling::<S, F, L>(simd, mu);
+                upper = F::load(simd, &rows.upper, j - 1, stride);
                 // Of a spring that doesn't act, mu is zero.
                 let along = here - before;
-                if D::TURNS { (-mu.min(none), along * mu.max(none)) } else { (none, along * mu) }
+                if L::ONLY_PULLS { (none, along * mu) } else { (-mu.min(none), along * mu.max(none)) }
             } else {
                 (none, closing_push)
             };
@@ -221,7 +211,7 @@ impl Pack<'_> {
             let pulled = place_after * towards_after + push - push_after;
             let place = here + pulled * w;
             (tension_after, push_after, here) = (tension, push, before);
-            if !D::TURNS {
+            if L::ONLY_PULLS {
                 place.store_at(self.position, j, stride);
                 continue;
             }
@@ -230,7 +220,7 @@ impl Pack<'_> {
             place_after.store_at(self.position, j, stride);
             share_after.store(&mut rows.right, j, stride);
         }
-        if !D::TURNS {
+        if L::ONLY_PULLS {
             return;
         }
         let mut before = Vec3Wide::load_at(simd, self.position, 0, stride);
@@ -270,37 +260,49 @@ impl Pack<'_> {
     }
 }
 
-/// The row of springs side by side. Those that aren't there, have no length or are slack where they only pull have no
-/// direction.
-#[inline(always)]
-fn spring<S: Simd, F: Wide<S>, D: Side, const DAMPED: bool>(
-    simd: S,
-    [here, next]: [End<F>; 2],
-    rest: F,
-    Yarn { stretch: Scaled { k, c }, give, .. }: Yarn,
-) -> Spring<F> {
-    let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
-    let softness = 1.0 / (k + c);
-    let along = next.position - here.position;
-    let squared = along.dot(along);
-    let length = squared.sqrt();
-    let rest = if D::ONLY_PULLS { rest * give } else { rest };
-    let longer_than = if D::ONLY_PULLS { rest } else { F::splat(simd, SHORTEST) };
-    let acts = rest.simd_gt(none) & length.simd_gt(longer_than);
-    let mut right = length * (rest - length);
-    if DAMPED {
-        let way = along - (next.previous - here.previous);
-        right = right * (k * softness) - along.dot(way) * (c * softness);
-    }
-    Spring {
-        along: along.or(acts, Vec3Wide::splat(simd, [0.0; 3])),
-        diagonal: acts.select(squared * (here.inverse_mass + next.inverse_mass + softness), one),
-        right: acts.select(right, none),
+impl<L> Springs<'_, L> {
+    /// The rows of springs side by side, that after node `at` of the first pack. Those that aren't there, have no length
+    /// or are slack where they only pull have no direction.
+    #[inline(always)]
+    fn row<S: Simd, F: Wide<S>, const DAMPED: bool>(
+        &self,
+        simd: S,
+        [here, next]: [End<F>; 2],
+        at: usize,
+        stride: usize,
+    ) -> Row<F>
+    where
+        L: Laws<S, F>,
+    {
+        let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
+        let along = next.position - here.position;
+        let squared = along.dot(along);
+        let length = squared.sqrt();
+        let mut rest = F::load(simd, self.rest, at, stride);
+        if L::ONLY_PULLS {
+            rest *= self.laws.give();
+        }
+        let [k, c] = self.laws.at(simd, at, stride).scaled(simd, rest, length);
+        let mut right = length * (rest - length) * k;
+        let mut factor = k;
+        if DAMPED {
+            let way = along - (next.previous - here.previous);
+            right -= along.dot(way) * c;
+            factor += c;
+        }
+        let longer_than = if L::ONLY_PULLS { rest } else { F::splat(simd, SHORTEST) };
+        let acts = rest.simd_gt(none) & length.simd_gt(longer_than);
+        Row {
+            along: along.or(acts, Vec3Wide::splat(simd, [0.0; 3])),
+            factor,
+            diagonal: acts.select(squared * ((here.inverse_mass + next.inverse_mass) * factor + one), one),
+            right: acts.select(right, none),
+        }
     }
 }
 
 /// What a spring that only pulls may do.
 #[inline(always)]
-fn pulling<S: Simd, F: Wide<S>, D: Side>(simd: S, mu: F) -> F {
-    if D::ONLY_PULLS { mu.min(F::splat(simd, 0.0)) } else { mu }
+fn pulling<S: Simd, F: Wide<S>, L: Laws<S, F>>(simd: S, mu: F) -> F {
+    if L::ONLY_PULLS { mu.min(F::splat(simd, 0.0)) } else { mu }
 }

@@ -8,11 +8,13 @@ use core::ops::Range;
 use fearless_simd::{dispatch, f32x8, f32x16, prelude::*};
 
 use super::{
-    spring::Scaled,
-    strand::{Pack, Rows, Side},
+    curl::Curls,
+    curvature::Bends,
+    law::{Grading, Laws, Pull, Scaled, SheetThreads},
+    strand::{Pack, Rows, Springs},
 };
 use crate::solver::{
-    Anchor, Lattice,
+    Anchor, Elasticity, Grain, Lattice, Material, SpringKind,
     lanes::Block,
     lattice::Threads,
     order::{Band, Order},
@@ -62,19 +64,49 @@ impl Loom {
     }
 }
 
-/// Constants of a thread's springs.
+/// What threads are made of.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Yarn {
-    pub stretch: Scaled,
-    /// None where nothing bends.
-    pub bend: Option<Scaled>,
-    /// Factor on the rest lengths of what only pulls, 1 or more.
-    pub give: f32,
+pub(in crate::solver) enum Yarn {
+    /// Springs that are alike.
+    Alike {
+        stretch: Scaled,
+        /// Between every other node. None where nothing bends.
+        bend: Option<Scaled>,
+    },
+    /// Springs of a level, which only pull.
+    Pulling(Pull),
+    /// The threads of a sheet.
+    Sheet {
+        /// By [`Grain::index`](crate::solver::Grain::index).
+        stretch: [Grading; 2],
+        /// B h² and its damping. None where nothing bends.
+        rigidity: Option<Scaled>,
+    },
 }
 
 impl Yarn {
+    pub fn new(material: &Material, h: f32) -> Self {
+        match &material.elasticity {
+            Elasticity::Springs(constants) => {
+                let scaled = |kind: SpringKind| Scaled::new(constants[kind.index()], h);
+                let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
+                Self::Alike { stretch: scaled(SpringKind::Structural), bend }
+            }
+            Elasticity::Moduli(moduli) => Self::Sheet {
+                stretch: [Grain::Warp, Grain::Weft].map(|grain| Grading::new(moduli, grain, h)),
+                rigidity: Some(Scaled::new(moduli.rigidity(), h)).filter(Scaled::acts),
+            },
+        }
+    }
+
     pub fn is_damped(&self) -> bool {
-        self.stretch.c > 0.0 || self.bend.is_some_and(|bend| bend.c > 0.0)
+        match self {
+            Self::Alike { stretch, bend } => stretch.c > 0.0 || bend.is_some_and(|bend| bend.c > 0.0),
+            Self::Pulling(_) => false,
+            Self::Sheet { stretch: [warp, _], rigidity } => {
+                warp.damping > 0.0 || rigidity.is_some_and(|rigidity| rigidity.c > 0.0)
+            }
+        }
     }
 }
 
@@ -132,32 +164,33 @@ impl Last {
 pub(in crate::solver) struct Weaver<'a> {
     pub lattice: &'a Lattice,
     pub yarn: Yarn,
+    pub curls: &'a Curls,
     pub instructions: Instructions,
 }
 
 impl Weaver<'_> {
     /// Solves all columns and all rows.
-    pub fn solve<D: Side>(&self, sheet: &mut Sheet, last: Last, loom: &mut Loom) {
+    pub fn solve(&self, sheet: &mut Sheet, last: Last, loom: &mut Loom) {
         for threads in last.order() {
             match threads {
-                Last::Columns => self.solve_columns::<D>(sheet, loom),
+                Last::Columns => self.solve_columns(sheet, loom),
                 Last::Rows => {
                     for band in self.lattice.order().bands() {
-                        self.solve_rows::<D>(&mut sheet.band(band), band, loom);
+                        self.solve_rows(&mut sheet.band(band), band, loom);
                     }
                 }
             }
         }
     }
 
-    fn solve_columns<D: Side>(&self, sheet: &mut Sheet, loom: &mut Loom) {
+    fn solve_columns(&self, sheet: &mut Sheet, loom: &mut Loom) {
         let (order, threads) = (self.lattice.order(), &self.lattice.along_columns);
         if order.bands().len() > 1 {
             for first in (0..order.pack_count()).step_by(2) {
                 for band in order.bands() {
                     self.take_columns(&sheet.band(band), band, first, loom);
                 }
-                self.solve_taken_columns::<D>(first, loom);
+                self.solve_taken_columns(first, loom);
                 for band in order.bands() {
                     self.put_columns(loom, sheet.band(band).position, band, first);
                 }
@@ -173,7 +206,7 @@ impl Weaver<'_> {
             (0..).step_by(2).zip(pairs.zip(inverse_mass.chunks(2 * stride)))
         {
             let mut pack = Pack { position, previous, inverse_mass, stride };
-            self.solve_packs::<D>(&mut pack, threads, first, &mut loom.rows);
+            self.solve_packs(&mut pack, threads, first, self.curls.of_columns(first, stride), &mut loom.rows);
         }
     }
 
@@ -190,12 +223,12 @@ impl Weaver<'_> {
     }
 
     /// Solves the columns that were taken.
-    pub fn solve_taken_columns<D: Side>(&self, first: usize, loom: &mut Loom) {
+    pub fn solve_taken_columns(&self, first: usize, loom: &mut Loom) {
         let stride = self.lattice.rows;
         let count = self.packs(first).len() * stride;
         let Loom { rows, position, previous, inverse_mass } = loom;
         let mut pack = Pack { position: &mut position[..count], previous, inverse_mass, stride };
-        self.solve_packs::<D>(&mut pack, &self.lattice.along_columns, first, rows);
+        self.solve_packs(&mut pack, &self.lattice.along_columns, first, self.curls.of_columns(first, stride), rows);
     }
 
     /// Puts a band's part of columns back to where it was taken from.
@@ -212,7 +245,7 @@ impl Weaver<'_> {
     }
 
     /// Solves the rows of a band.
-    pub fn solve_rows<D: Side>(&self, part: &mut Sheet, band: Band, loom: &mut Loom) {
+    pub fn solve_rows(&self, part: &mut Sheet, band: Band, loom: &mut Loom) {
         let (level, threads) = (self.instructions.level(), &self.lattice.along_rows);
         let nodes = threads.nodes;
         loom.make_room(2 * nodes);
@@ -227,27 +260,20 @@ impl Weaver<'_> {
             let (number, count) = ((band.first + first) / LANES, some.len().div_ceil(LANES) * nodes);
             let inverse_mass = &row_masses[first / LANES * nodes..][..count];
             let mut pack = Pack { position: &mut taken[..count], previous, inverse_mass, stride: nodes };
-            self.solve_packs::<D>(&mut pack, threads, number, rows);
+            self.solve_packs(&mut pack, threads, number, self.curls.of_rows(number, nodes), rows);
             dispatch!(level, simd => put_rows(simd, taken, nodes, position, band.rows, some));
         }
     }
 
     /// Solves one or two packs of threads, from that with a `number` on.
-    fn solve_packs<D: Side>(&self, pack: &mut Pack, threads: &Threads, number: usize, rows: &mut Rows) {
-        let (level, yarn) = (self.instructions.level(), self.yarn);
-        match (pack.position.len() > pack.stride, yarn.is_damped()) {
-            (true, false) => {
-                dispatch!(level, simd => solve_threads::<_, f32x16<_>, D, false>(simd, pack, threads, number, yarn, rows));
-            }
-            (true, true) => {
-                dispatch!(level, simd => solve_threads::<_, f32x16<_>, D, true>(simd, pack, threads, number, yarn, rows));
-            }
-            (false, false) => {
-                dispatch!(level, simd => solve_threads::<_, f32x8<_>, D, false>(simd, pack, threads, number, yarn, rows));
-            }
-            (false, true) => {
-                dispatch!(level, simd => solve_threads::<_, f32x8<_>, D, true>(simd, pack, threads, number, yarn, rows));
-            }
+    fn solve_packs(&self, pack: &mut Pack, threads: &Threads, number: usize, rest: &[Block], rows: &mut Rows) {
+        let level = self.instructions.level();
+        let run = ThreadRun { threads, number, rest, yarn: self.yarn };
+        match (pack.position.len() > pack.stride, self.yarn.is_damped()) {
+            (true, false) => dispatch!(level, simd => run.solve::<_, f32x16<_>, false>(simd, pack, rows)),
+            (true, true) => dispatch!(level, simd => run.solve::<_, f32x16<_>, true>(simd, pack, rows)),
+            (false, false) => dispatch!(level, simd => run.solve::<_, f32x8<_>, false>(simd, pack, rows)),
+            (false, true) => dispatch!(level, simd => run.solve::<_, f32x8<_>, true>(simd, pack, rows)),
         }
     }
 }
@@ -285,27 +311,62 @@ fn put_rows<S: Simd>(simd: S, taken: &[Block], nodes: usize, columns: &mut [Bloc
     }
 }
 
-#[inline(always)]
-fn solve_threads<S: Simd, F: Wide<S>, D: Side, const DAMPED: bool>(
-    simd: S,
-    pack: &mut Pack,
-    threads: &Threads,
+/// One or two packs of threads that are being solved.
+#[derive(Clone, Copy)]
+struct ThreadRun<'a> {
+    threads: &'a Threads,
+    /// Number of the first pack.
     number: usize,
+    /// What the bends of these packs are at rest, m; empty where the cloth is flat.
+    rest: &'a [Block],
     yarn: Yarn,
-    rows: &mut Rows,
-) {
-    let of_packs = number * threads.nodes..(number + F::PACKS) * threads.nodes;
-    let count = threads.count;
-    if let Some(bend) = yarn.bend {
-        pack.solve_bends::<S, F, DAMPED>(simd, count, &threads.bend[of_packs.clone()], bend);
+}
+
+impl ThreadRun<'_> {
+    #[inline(always)]
+    fn solve<S: Simd, F: Wide<S>, const DAMPED: bool>(&self, simd: S, pack: &mut Pack, rows: &mut Rows) {
+        let (threads, first) = (self.threads, self.number * self.threads.nodes);
+        let count = threads.count;
+        // What comes last is held best: stretch shows more than bending.
+        match self.yarn {
+            Yarn::Alike { stretch, bend } => {
+                if let Some(bend) = bend {
+                    pack.solve_bends::<S, F, DAMPED>(simd, count, &threads.bend[first..], bend);
+                }
+                if stretch.acts() {
+                    self.stretch::<S, F, _, DAMPED>(simd, pack, stretch, rows);
+                }
+            }
+            Yarn::Pulling(pull) => self.stretch::<S, F, _, false>(simd, pack, pull, rows),
+            Yarn::Sheet { stretch, rigidity } => {
+                if let Some(rigidity) = rigidity {
+                    let bends = Bends { weights: &threads.curvature[first..], rest: self.rest, rigidity };
+                    if bends.rest.is_empty() {
+                        pack.solve_curvature::<S, F, DAMPED, false>(simd, count, bends, rows);
+                    } else {
+                        pack.solve_curvature::<S, F, DAMPED, true>(simd, count, bends, rows);
+                    }
+                }
+                let grading = stretch[threads.grain.index()];
+                let laws = SheetThreads { shares: &threads.shares[first..], grading };
+                self.stretch::<S, F, _, DAMPED>(simd, pack, laws, rows);
+            }
+        }
     }
-    // What comes last is held best: stretch shows more than bending.
-    if yarn.stretch.acts() {
-        let rest = &threads.stretch[of_packs];
-        if threads.closed {
-            pack.solve::<S, F, D, DAMPED, true>(simd, count, rest, yarn, rows);
+
+    #[inline(always)]
+    fn stretch<S: Simd, F: Wide<S>, L: Laws<S, F>, const DAMPED: bool>(
+        &self,
+        simd: S,
+        pack: &mut Pack,
+        laws: L,
+        rows: &mut Rows,
+    ) {
+        let springs = Springs { rest: &self.threads.stretch[self.number * self.threads.nodes..], laws };
+        if self.threads.closed {
+            pack.solve::<S, F, L, DAMPED, true>(simd, self.threads.count, springs, rows);
         } else {
-            pack.solve::<S, F, D, DAMPED, false>(simd, count, rest, yarn, rows);
+            pack.solve::<S, F, L, DAMPED, false>(simd, self.threads.count, springs, rows);
         }
     }
 }

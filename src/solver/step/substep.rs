@@ -6,11 +6,11 @@ use crate::solver::{
     Lattice, LevelPass, Method, Particles, Scratch, StepContext, Tethers, Topology,
     constraint::{
         braid::Strung,
-        diagonal, grab,
+        diagonal::{self, CellYarn},
+        grab,
+        law::Scaled,
         level::LevelRun,
-        spring::{self, Scaled},
-        strand::Both,
-        tether,
+        spring, tether,
         weave::{self, Last, Weaver, Yarn},
     },
     explicit,
@@ -18,7 +18,6 @@ use crate::solver::{
     integrate::{self, Finish, Motion, SpeedLimit},
     lanes::{Points, Run},
     share::{self, Bench, Work},
-    topology::SpringKind,
 };
 
 /// What all substeps of a step have in common.
@@ -104,15 +103,13 @@ impl Substep<'_> {
             let Scratch { lanes, bench, pins, levels, .. } = scratch;
             levels.solve(run, lanes, pins, bench);
         }
-        let scaled = |kind| Scaled::new(self.ctx.material.alike(kind), self.h);
-        let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
-        let yarn = Yarn { stretch: scaled(SpringKind::Structural), bend, give: 1.0 };
+        let yarn = Yarn::new(&self.ctx.material, self.h);
         if let Some((pool, lattice)) = self.helpers {
-            let Scratch { lanes, pins, levels, benches, applied_force, instructions, .. } = scratch;
+            let Scratch { lanes, pins, levels, curls, benches, applied_force, instructions, .. } = scratch;
             let finish = (!self.is_near).then(|| self.finish(applied_force, goes_on));
             let work = Work {
-                weaver: Weaver { lattice, yarn, instructions: *instructions },
-                shear: scaled(SpringKind::Shear),
+                weaver: Weaver { lattice, yarn, curls, instructions: *instructions },
+                cells: CellYarn::new(&self.ctx.material, self.h, curls),
                 last: self.last,
                 levels: run.as_ref().map(|run| (run, &*levels)),
                 tethers: self.ctx.tethers.map_or(&[], Tethers::of_cloth),
@@ -130,7 +127,7 @@ impl Substep<'_> {
             }
         }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, bench: Bench { loom, seam, .. }, instructions, .. } = scratch;
+        let Scratch { lanes, beads, bench: Bench { loom, seam, .. }, curls, instructions, .. } = scratch;
         let (material, h) = (&self.ctx.material, self.h);
         let loose = self.topology.batches.iter().filter(|batch| !batch.woven);
         let braids = &self.topology.braids;
@@ -139,8 +136,8 @@ impl Substep<'_> {
         if let Some(lattice) = &self.topology.lattice {
             let mut run = lanes.whole();
             let mut sheet = run.sheet();
-            diagonal::solve(&mut sheet, lattice, scaled(SpringKind::Shear), seam, *instructions);
-            Weaver { lattice, yarn, instructions: *instructions }.solve::<Both>(&mut sheet, self.last, loom);
+            diagonal::solve(&mut sheet, lattice, CellYarn::new(material, h, curls), seam, *instructions);
+            Weaver { lattice, yarn, curls, instructions: *instructions }.solve(&mut sheet, self.last, loom);
         }
         false
     }
@@ -169,7 +166,7 @@ impl Substep<'_> {
             passes: self.levels,
             tethers: self.ctx.tethers.filter(|tethers| !tethers.is_empty())?,
             slack: self.ctx.tether_slack,
-            stretch: Scaled::new(self.ctx.material.alike(SpringKind::Structural), self.h),
+            stretch: Scaled::new(self.ctx.material.thread_stiffness(), self.h),
             last: self.last,
             instructions: scratch.instructions,
         })

@@ -1,0 +1,125 @@
+//! How rows and columns bend: a plate of rectangular cells.
+//!
+//! Its energy is B/2 (κuu² + κvv² + 2 κuv²) times the area, with the curvatures along rows and columns and the twist: that
+//! of a sheet that bends as easily in any direction, and doesn't curl across a bend.
+//!
+//! ```text
+//!   κuu = 2 / (a + b) ((x2 - x1) / b - (x1 - x0) / a)          x0 -a- x1 -b- x2
+//!   κuv = (x00 + x11 - x01 - x10) / (the cell's area)
+//! ```
+
+use bevy::prelude::*;
+
+use super::lattice::Rectangle;
+use crate::solver::Bend;
+
+/// Where two weights stand in a [`Bend`] along a thread: of the particle before and of that after.
+pub(super) const ENDS: [usize; 2] = [0, 1];
+
+/// Particles in rows and columns, numbered row by row, where they are at rest.
+pub(super) struct Plate<'a> {
+    rest: &'a [Vec3],
+    rows: usize,
+    columns: usize,
+    closed: bool,
+}
+
+impl<'a> Plate<'a> {
+    pub fn new(rest: &'a [Vec3], rectangle: &Rectangle) -> Self {
+        let columns = rectangle.columns;
+        Self { rest, rows: rest.len() / columns, columns, closed: rectangle.closed }
+    }
+
+    /// All bends, and whether each is within the lattice: all but those across the seam of a tube.
+    pub fn bends(&self) -> impl Iterator<Item = (Bend, bool)> {
+        let places = || (0..self.rows).flat_map(|row| (0..self.columns).map(move |column| (row, column)));
+        let is_inner = |column: usize| column > 0 && column + 1 < self.columns;
+        let along_rows = places().filter_map(move |at| Some((self.along_row(at)?, is_inner(at.1))));
+        let along_columns = places().filter_map(|at| Some((self.along_column(at)?, true)));
+        let twists = places().filter_map(|at| Some((self.twist(at)?, at.1 + 1 < self.columns)));
+        along_rows.chain(along_columns).chain(twists)
+    }
+
+    /// The bend of a row in one of its particles.
+    pub fn along_row(&self, (row, column): (usize, usize)) -> Option<Bend> {
+        let (before, after) = (self.left((row, column))?, self.right((row, column))?);
+        self.along(
+            [before, (row, column), after],
+            if row + 1 < self.rows { (row + 1, column) } else { (row - 1, column) },
+        )
+    }
+
+    /// The bend of a column in one of its particles.
+    pub fn along_column(&self, (row, column): (usize, usize)) -> Option<Bend> {
+        let (before, after) = ((row.checked_sub(1)?, column), self.below((row, column))?);
+        let side = self.right((row, column)).or_else(|| self.left((row, column)))?;
+        self.along([before, (row, column), after], side)
+    }
+
+    /// The twist of the cell that begins at a particle.
+    pub fn twist(&self, at: (usize, usize)) -> Option<Bend> {
+        let corners = self.cell(at)?;
+        let weight = (2.0 / self.area(at)).sqrt();
+        weight.is_finite().then(|| Bend {
+            particles: [corners[0], corners[2], corners[1], corners[3]].map(|at| self.particle(at)),
+            weights: [weight, weight, -weight, -weight],
+            ..Bend::default()
+        })
+    }
+
+    fn along(&self, thread: [(usize, usize); 3], side: (usize, usize)) -> Option<Bend> {
+        let [before, here, after] = thread.map(|at| self.place(at));
+        let (a, b) = (before.distance(here), here.distance(after));
+        let area = self.area_around(thread[1]).sqrt();
+        let [p, q] = [a, b].map(|side| 2.0 * area / ((a + b) * side));
+        (p.is_finite() && q.is_finite()).then(|| Bend {
+            particles: [thread[0], thread[2], thread[1], side].map(|at| self.particle(at)),
+            weights: [p, q, -(p + q), 0.0],
+            ..Bend::default()
+        })
+    }
+
+    /// Area that a particle stands for, m²: a quarter of the cells around it.
+    fn area_around(&self, at: (usize, usize)) -> f32 {
+        let left = self.left(at);
+        let above = |(row, column): (usize, usize)| row.checked_sub(1).map(|row| (row, column));
+        let cells = [Some(at), left, above(at), left.and_then(above)];
+        cells.into_iter().flatten().map(|cell| self.area(cell) / 4.0).sum()
+    }
+
+    /// Area of the cell that begins at a particle, m²; 0 where there is none.
+    fn area(&self, at: (usize, usize)) -> f32 {
+        self.cell(at).map_or(0.0, |corners| {
+            let [p, q, r, s] = corners.map(|at| self.place(at));
+            (r - p).cross(s - q).length() / 2.0
+        })
+    }
+
+    /// Corners of the cell that begins at a particle, around it.
+    fn cell(&self, at: (usize, usize)) -> Option<[(usize, usize); 4]> {
+        let (right, below) = (self.right(at)?, self.below(at)?);
+        Some([at, right, self.right(below)?, below])
+    }
+
+    fn left(&self, (row, column): (usize, usize)) -> Option<(usize, usize)> {
+        let before = if self.closed { Some((column + self.columns - 1) % self.columns) } else { column.checked_sub(1) };
+        before.map(|column| (row, column))
+    }
+
+    fn right(&self, (row, column): (usize, usize)) -> Option<(usize, usize)> {
+        let next = if self.closed { (column + 1) % self.columns } else { column + 1 };
+        (next < self.columns).then_some((row, next))
+    }
+
+    fn below(&self, (row, column): (usize, usize)) -> Option<(usize, usize)> {
+        (row + 1 < self.rows).then_some((row + 1, column))
+    }
+
+    fn place(&self, at: (usize, usize)) -> Vec3 {
+        self.rest[self.particle(at) as usize]
+    }
+
+    fn particle(&self, (row, column): (usize, usize)) -> u32 {
+        (row * self.columns + column) as u32
+    }
+}

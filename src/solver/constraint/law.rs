@@ -1,0 +1,201 @@
+//! How springs side by side answer to being stretched.
+
+use fearless_simd::prelude::*;
+
+use crate::solver::{
+    Grain, Moduli, SpringConstants,
+    simd::{Lane, Wide},
+};
+
+/// k h² and c h of springs that are alike in a substep of h seconds, kg.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Scaled {
+    pub k: f32,
+    pub c: f32,
+}
+
+impl Scaled {
+    pub fn new(constants: SpringConstants, h: f32) -> Self {
+        Self { k: constants.stiffness * h * h, c: constants.damping * h }
+    }
+
+    /// Whether such springs do anything.
+    pub fn acts(&self) -> bool {
+        self.k + self.c > 0.0
+    }
+}
+
+/// What some springs side by side follow.
+pub(in crate::solver) trait Law<S: Simd, F: Wide<S>>: Copy {
+    /// k h² and c h (kg) of springs of these lengths, at rest and now, m.
+    fn scaled(self, simd: S, rest: F, length: F) -> [F; 2];
+}
+
+impl<S: Simd, F: Wide<S>> Law<S, F> for Scaled {
+    #[inline(always)]
+    fn scaled(self, simd: S, _: F, _: F) -> [F; 2] {
+        [F::splat(simd, self.k), F::splat(simd, self.c)]
+    }
+}
+
+/// Each spring with a k h² and a c h of its own.
+impl<S: Simd, F: Wide<S>> Law<S, F> for [F; 2] {
+    #[inline(always)]
+    fn scaled(self, _: S, _: F, _: F) -> [F; 2] {
+        self
+    }
+}
+
+/// What the threads of a sheet follow along one of its directions, in a substep of h seconds.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Grading {
+    /// C h², kg.
+    pub stretch: f32,
+    /// G h², kg.
+    pub shear: f32,
+    /// Half of the growth with the strain: the secant's.
+    half_stiffening: f32,
+    compression: f32,
+    /// Damping over stiffness, over h.
+    pub damping: f32,
+}
+
+impl Grading {
+    pub fn new(moduli: &Moduli, grain: Grain, h: f32) -> Self {
+        let i = grain.index();
+        Self {
+            stretch: moduli.stretch[i] * h * h,
+            shear: moduli.shear * h * h,
+            half_stiffening: 0.5 * moduli.stiffening[i],
+            compression: moduli.compression,
+            damping: moduli.stretch_damping / h,
+        }
+    }
+}
+
+/// What some springs of a sheet's threads follow.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Graded<F> {
+    /// k h² over the rest length, kg/m.
+    per_length: F,
+    half_stiffening: F,
+    compression: f32,
+    damping: f32,
+}
+
+impl<S: Simd, F: Wide<S>> Law<S, F> for Graded<F> {
+    #[inline(always)]
+    fn scaled(self, _: S, rest: F, length: F) -> [F; 2] {
+        let Self { per_length, half_stiffening, compression, damping } = self;
+        // k (1 + s ε/2) as k/L (L + s (l - L)/2), with s = 0 where it is pressed together.
+        let taut = rest + (length - rest) * half_stiffening;
+        let k = per_length * length.simd_gt(rest).select(taut, rest * compression);
+        [k, k * damping]
+    }
+}
+
+/// The laws of threads side by side, spring after spring.
+pub(in crate::solver) trait Laws<S: Simd, F: Wide<S>>: Copy {
+    type Law: Law<S, F>;
+
+    /// Whether slack springs are without effect. Else taut ones pull along the direction that they have after the move.
+    const ONLY_PULLS: bool;
+
+    /// The law of the springs after node `at`, and of those of a second pack after node `at + stride`.
+    fn at(&self, simd: S, at: usize, stride: usize) -> Self::Law;
+
+    /// Factor on the rest lengths of what only pulls, 1 or more.
+    #[inline(always)]
+    fn give(&self) -> f32 {
+        1.0
+    }
+}
+
+impl<S: Simd, F: Wide<S>> Laws<S, F> for Scaled {
+    type Law = Self;
+
+    const ONLY_PULLS: bool = false;
+
+    #[inline(always)]
+    fn at(&self, _: S, _: usize, _: usize) -> Self {
+        *self
+    }
+}
+
+/// Springs that pull where they are too long, and do nothing else: for levels, whose nodes are heavy and far apart, so
+/// that they turn little.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Pull {
+    pub spring: Scaled,
+    /// Factor on the rest lengths, 1 or more.
+    pub give: f32,
+}
+
+impl<S: Simd, F: Wide<S>> Laws<S, F> for Pull {
+    type Law = Scaled;
+
+    const ONLY_PULLS: bool = true;
+
+    #[inline(always)]
+    fn at(&self, _: S, _: usize, _: usize) -> Scaled {
+        self.spring
+    }
+
+    #[inline(always)]
+    fn give(&self) -> f32 {
+        self.give
+    }
+}
+
+/// Threads of a sheet.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct SheetThreads<'a> {
+    /// Parts of C and of -G that each spring has, over its rest length, 1/m.
+    pub shares: &'a [[Lane; 2]],
+    pub grading: Grading,
+}
+
+impl<S: Simd, F: Wide<S>> Laws<S, F> for SheetThreads<'_> {
+    type Law = Graded<F>;
+
+    const ONLY_PULLS: bool = false;
+
+    #[inline(always)]
+    fn at(&self, simd: S, at: usize, stride: usize) -> Graded<F> {
+        let Grading { stretch, shear, half_stiffening, compression, damping } = self.grading;
+        let lanes = self.shares.as_flattened();
+        let part = |i: usize| F::load(simd, lanes, 2 * at + i, 2 * stride);
+        let k = part(0) * stretch - part(1) * shear;
+        // A cell that is very long and narrow would need springs that push apart.
+        let per_length = k.max(F::splat(simd, 0.0));
+        Graded { per_length, half_stiffening: F::splat(simd, half_stiffening), compression, damping }
+    }
+}
+
+/// Threads of a sheet that go along any direction.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct AnyThreads<'a> {
+    /// Parts of Cu, Cv and -G that each spring has, over its rest length, 1/m.
+    pub shares: &'a [[Lane; 3]],
+    /// By [`Grain::index`].
+    pub gradings: [Grading; 2],
+}
+
+impl<S: Simd, F: Wide<S>> Laws<S, F> for AnyThreads<'_> {
+    type Law = Graded<F>;
+
+    const ONLY_PULLS: bool = false;
+
+    #[inline(always)]
+    fn at(&self, simd: S, at: usize, stride: usize) -> Graded<F> {
+        let [along_warp, along_weft] = self.gradings;
+        let lanes = self.shares.as_flattened();
+        let part = |i: usize| F::load(simd, lanes, 3 * at + i, 3 * stride);
+        let (warp, weft) = (part(0), part(1));
+        let k = warp * along_warp.stretch + weft * along_weft.stretch - part(2) * along_warp.shear;
+        let per_length = k.max(F::splat(simd, 0.0));
+        let stiffening = |grading: Grading| F::splat(simd, grading.half_stiffening);
+        let half_stiffening = warp.simd_ge(weft).select(stiffening(along_warp), stiffening(along_weft));
+        Graded { per_length, half_stiffening, compression: along_warp.compression, damping: along_warp.damping }
+    }
+}
