@@ -5,8 +5,8 @@
 use bevy::{math::Mat3A, math::Vec3A, prelude::Mesh};
 use bevy_drape::{
     build,
-    prelude::{ClothGrid, Fabric},
-    solver::{Anchor, Effort, Method, Particles, Scratch, StepContext, Topology, step},
+    prelude::{ClothGrid, ClothSprings, Fabric},
+    solver::{Anchor, Effort, Elasticity, Material, Method, Particles, Scratch, StepContext, Topology, step},
 };
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 
@@ -21,15 +21,18 @@ fn topology(n: u32) -> Topology {
 /// One frame of a cloth that hangs by two corners.
 fn hang(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("hang");
-    for (name, method, n, air) in [
-        ("strands", Method::Strands, 64, 0.0),
-        ("strands in air", Method::Strands, 64, 1.225),
-        ("xpbd", Method::Xpbd, 64, 0.0),
-        ("xpbd in air", Method::Xpbd, 64, 1.225),
-        ("explicit", Method::Explicit, 32, 0.0),
+    let fabric = Fabric::default().material().expect("valid constants");
+    let constants = ClothSprings::default().constants().expect("valid constants");
+    let springs = Material { elasticity: Elasticity::Springs(constants), density: 0.2, ..fabric };
+    for (name, material, method, n, air) in [
+        ("strands", springs, Method::Strands, 64, 0.0),
+        ("strands in air", springs, Method::Strands, 64, 1.225),
+        ("strands of a fabric in air", fabric, Method::Strands, 64, 1.225),
+        ("xpbd", springs, Method::Xpbd, 64, 0.0),
+        ("xpbd in air", springs, Method::Xpbd, 64, 1.225),
+        ("explicit", springs, Method::Explicit, 32, 0.0),
     ] {
         let topology = topology(n);
-        let material = Fabric::default().material().expect("valid constants");
         let rest: Vec<Vec3A> = topology.rest.iter().copied().map(Vec3A::from).collect();
         let pins = [0, n - 1];
         let anchors = pins.map(|particle| {
@@ -55,6 +58,7 @@ fn hang(criterion: &mut Criterion) {
             max_velocity: 50.0,
             tethers: Some(&tethers),
             tether_slack: 0.002,
+            margin: 0.005,
             obstacles: &[],
             fluid_density: air,
             winds: &[],

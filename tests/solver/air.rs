@@ -5,11 +5,11 @@ use bevy::{
     prelude::*,
 };
 use bevy_drape::{
-    prelude::{ClothGrid, Fabric},
-    solver::{WindRegion, WindSource, force::wind::Gusts},
+    prelude::{ClothGrid, ClothSprings},
+    solver::{Material, WindRegion, WindSource, force::wind::Gusts},
 };
 
-use crate::bench_bed::{Bed, GRAVITY, bits};
+use crate::bench_bed::{Bed, GRAVITY, bits, springs_in_air};
 
 const CALM: Gusts = Gusts { strength: 0.0, period: 4.0, turbulence: 0.0, eddy_size: 1.0, seed: 7 };
 
@@ -20,8 +20,8 @@ fn wind(velocity: Vec3A) -> WindSource {
 
 /// A heavy square metre that lies in the air without gravity, all of it free.
 fn sheet(drag: f32, lift: f32) -> Bed {
-    let fabric = Fabric { density: 1.0, damping: 0.0, drag, lift, ..Fabric::default() };
-    Bed { gravity: Vec3A::ZERO, ..Bed::lying(5, fabric.material().unwrap()) }
+    let material = Material { density: 1.0, damping: 0.0, drag, lift, ..springs_in_air(ClothSprings::default()) };
+    Bed { gravity: Vec3A::ZERO, ..Bed::lying(5, material) }
 }
 
 /// Force on the whole sheet in the first instant of a wind, N.
@@ -68,8 +68,9 @@ fn the_side_that_triangles_face_makes_no_difference() {
 
 #[test]
 fn a_sheet_falling_flat_reaches_its_terminal_speed() {
-    let fabric = Fabric { density: 0.1, damping: 0.0, drag: 1.2, lift: 0.0, ..Fabric::default() };
-    let mut bed = Bed::lying(5, fabric.material().unwrap());
+    let material =
+        Material { density: 0.1, damping: 0.0, drag: 1.2, lift: 0.0, ..springs_in_air(ClothSprings::default()) };
+    let mut bed = Bed::lying(5, material);
     bed.run(3.0);
     let expected = (2.0 * 0.1 * GRAVITY / (1.225 * 1.2)).sqrt();
     let speed = -bed.particles.velocity.iter().map(|v| v.y).sum::<f32>() / 25.0;
@@ -78,8 +79,8 @@ fn a_sheet_falling_flat_reaches_its_terminal_speed() {
 
 #[test]
 fn the_lightest_sheet_in_a_hurricane_takes_its_speed_and_no_more() {
-    let fabric = Fabric { density: 0.005, drag: 2.0, lift: 1.0, ..Fabric::default() };
-    let mut bed = Bed { gravity: Vec3A::ZERO, ..Bed::lying(5, fabric.material().unwrap()) };
+    let material = Material { density: 0.005, drag: 2.0, lift: 1.0, ..springs_in_air(ClothSprings::default()) };
+    let mut bed = Bed { gravity: Vec3A::ZERO, ..Bed::lying(5, material) };
     bed.winds = vec![wind(Vec3A::new(10.0, 60.0, 0.0))];
     for _ in 0..60 {
         bed.step(1.0 / 60.0);

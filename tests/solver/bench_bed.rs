@@ -9,10 +9,10 @@ use bevy::{
 };
 use bevy_drape::{
     build,
-    prelude::{ClothGrid, Fabric},
+    prelude::{ClothGrid, ClothSprings, Fabric},
     solver::{
-        Anchor, Effort, Grab, Material, Method, Obstacle, Particles, Scratch, StepContext, StepReport, Tethers,
-        Topology, WindSource, step,
+        Anchor, Effort, Elasticity, Grab, Material, Method, Obstacle, Particles, Scratch, StepContext, StepReport,
+        Tethers, Topology, WindSource, step,
     },
 };
 
@@ -40,16 +40,28 @@ pub struct Bed {
     pub effort: Effort,
     pub max_substeps: u32,
     pub max_velocity: f32,
+    pub margin: f32,
     pub gravity: Vec3A,
     pub fluid_density: f32,
     pub pool: Option<Arc<TaskPool>>,
     pub scratch: Scratch,
 }
 
-/// A cloth in a vacuum without damping: what is on paper.
+/// A fabric in a vacuum without damping, as thin as can be: what is on paper.
 pub fn bare(fabric: Fabric) -> Material {
-    let bare = Fabric { damping: 0.0, drag: 0.0, lift: 0.0, thickness: 0.0, ..fabric };
-    bare.material().expect("valid constants")
+    let material = fabric.material().expect("valid constants");
+    Material { friction: material.friction, ..Material::bare(material.density, material.elasticity) }
+}
+
+/// Plain springs in a vacuum without damping, as thin as can be: what is on paper. They weigh 0.2 kg/m².
+pub fn springs(springs: ClothSprings) -> Material {
+    let elasticity = Elasticity::Springs(springs.constants().expect("valid constants"));
+    Material { friction: 0.5, ..Material::bare(0.2, elasticity) }
+}
+
+/// Plain springs as a game has them: in air, with damping, and 5 mm off obstacles.
+pub fn springs_in_air(constants: ClothSprings) -> Material {
+    Material { damping: 0.2, thickness: 0.005, drag: 1.2, lift: 0.4, ..springs(constants) }
 }
 
 impl Bed {
@@ -71,6 +83,7 @@ impl Bed {
             effort: Effort::fixed(8, Vec::new()),
             max_substeps: 4096,
             max_velocity: 100.0,
+            margin: 0.0,
             gravity: Vec3A::NEG_Y * GRAVITY,
             fluid_density: 1.225,
             pool: None,
@@ -138,6 +151,7 @@ impl Bed {
             max_velocity: self.max_velocity,
             tethers: self.tethers.as_ref(),
             tether_slack: self.tether_slack,
+            margin: self.margin,
             obstacles: &self.obstacles,
             fluid_density: self.fluid_density,
             winds: &self.winds,

@@ -5,13 +5,13 @@ use bevy::{
     prelude::{Capsule3d, Cuboid, Cylinder, Quat, Sphere, Vec3, default},
 };
 use bevy_drape::{
-    prelude::{ClothGrip, Fabric},
+    prelude::{ClothGrip, ClothSprings},
     solver::{ColliderShape, Material, Method, Obstacle},
 };
 use proptest::prelude::*;
 
 use crate::{
-    bench_bed::{Bed, GRAVITY, STABLE, bare},
+    bench_bed::{Bed, GRAVITY, STABLE, springs},
     grabs::hand,
 };
 
@@ -21,7 +21,7 @@ fn still(shape: ColliderShape, place: Vec3) -> Obstacle {
 }
 
 fn cotton(friction: f32, thickness: f32) -> Material {
-    Material { friction, thickness, ..bare(Fabric::default()) }
+    Material { friction, thickness, ..springs(ClothSprings::default()) }
 }
 
 /// How deep the deepest particle is below the surface that it should keep to, m.

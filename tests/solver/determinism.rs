@@ -8,17 +8,17 @@ use bevy::{
     tasks::{TaskPool, TaskPoolBuilder},
 };
 use bevy_drape::{
-    prelude::{ClothGrid, ClothGrip, Fabric},
+    prelude::{ClothGrid, ClothGrip, ClothSprings},
     solver::{ColliderShape, Method, Obstacle},
 };
 
 use crate::{
-    bench_bed::{ALL, Bed, bits},
+    bench_bed::{ALL, Bed, bits, springs_in_air},
     grabs::hand,
 };
 
 fn scene(method: Method) -> Bed {
-    let bed = Bed::lying(18, Fabric::default().material().unwrap()).pinned([0, 17]).tethered(&[0, 17]).with_levels();
+    let bed = Bed::lying(18, springs_in_air(ClothSprings::default())).pinned([0, 17]).tethered(&[0, 17]).with_levels();
     let mut bed = Bed { method, ..bed };
     let pose = bevy::math::Isometry3d::from_translation(Vec3::new(0.0, -0.5, -0.3));
     bed.obstacles =
@@ -42,7 +42,7 @@ fn two_runs_give_the_same_bits() {
 fn scratch_carries_nothing_from_one_cloth_to_another() {
     for method in ALL {
         // Larger with more levels, smaller without any, and without rows and columns.
-        let material = Fabric { structural_damping: 0.01, ..Fabric::default() }.material().unwrap();
+        let material = springs_in_air(ClothSprings { structural_damping: 0.01, ..ClothSprings::default() });
         let others = [
             Bed::lying(40, material).pinned([5]).tethered(&[5]).with_levels(),
             Bed::new(ClothGrid::new(1.0, 1.0, 3, 5), material).pinned([0, 2]),
@@ -63,9 +63,9 @@ fn scratch_carries_nothing_from_one_cloth_to_another() {
 /// A cloth that is large enough for several threads to share it, of a size that is no multiple of anything.
 fn large(pins: impl Fn(ClothGrid) -> Vec<u32>) -> Bed {
     let grid = ClothGrid::new(1.0, 1.2, 101, 133).lying();
-    let fabric = Fabric { shear_damping: 0.001, bend_damping: 0.001, ..Fabric::default() };
+    let constants = ClothSprings { shear_damping: 0.001, bend_damping: 0.001, ..ClothSprings::default() };
     let pins = pins(grid);
-    Bed::new(grid, fabric.material().unwrap()).pinned(pins.clone()).tethered(&pins[..2]).with_substeps(4).with_levels()
+    Bed::new(grid, springs_in_air(constants)).pinned(pins.clone()).tethered(&pins[..2]).with_substeps(4).with_levels()
 }
 
 #[test]

@@ -6,16 +6,16 @@ use bevy::{
 };
 use bevy_drape::{
     build,
-    prelude::{ClothGrid, ClothGrip, Fabric},
+    prelude::{ClothGrid, ClothGrip, ClothSprings},
     solver::{ColliderShape, Grab, Material, Method, Obstacle, Tether, Tethers, measure},
 };
 
-use crate::bench_bed::{ALL, Bed, STABLE};
+use crate::bench_bed::{ALL, Bed, STABLE, springs_in_air};
 
 const STEP: f32 = 1.0 / 60.0;
 
 fn cotton() -> Material {
-    Fabric::default().material().expect("valid constants")
+    springs_in_air(ClothSprings::default())
 }
 
 /// A hand at `weights` of a triangle.

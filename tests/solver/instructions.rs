@@ -5,12 +5,12 @@ use bevy::{
     prelude::*,
 };
 use bevy_drape::{
-    prelude::{ClothGrid, ClothGrip, Fabric},
-    solver::{ColliderShape, Instructions, Method, Obstacle, WindRegion, WindSource, force::wind::Gusts},
+    prelude::{ClothGrid, ClothGrip, ClothSprings},
+    solver::{ColliderShape, Instructions, Material, Method, Obstacle, WindRegion, WindSource, force::wind::Gusts},
 };
 
 use crate::{
-    bench_bed::{ALL, Bed, bits},
+    bench_bed::{ALL, Bed, bits, springs_in_air},
     grabs::hand,
     lattices::{hexagons, strewn},
     threads::{ell, sleeve},
@@ -18,14 +18,14 @@ use crate::{
 
 /// A cloth to which all that there is happens at once.
 fn scene(mesh: impl Into<Mesh>, method: Method, damping: f32) -> Bed {
-    let fabric = Fabric {
+    let constants = ClothSprings {
         structural_damping: damping,
         shear_damping: damping,
         bend_damping: damping,
-        damping: 0.5,
-        ..Fabric::default()
+        ..ClothSprings::default()
     };
-    let bed = Bed::new(mesh, fabric.material().unwrap()).pinned([0, 4]).tethered(&[0, 4]).with_levels();
+    let material = Material { damping: 0.5, ..springs_in_air(constants) };
+    let bed = Bed::new(mesh, material).pinned([0, 4]).tethered(&[0, 4]).with_levels();
     let mut bed = Bed { method, max_substeps: 64, ..bed };
     let gusts = Gusts { strength: 0.5, period: 4.0, turbulence: 0.3, eddy_size: 1.0, seed: 7 };
     let (region, origin) = (WindRegion::Everywhere, Vec3A::ZERO);

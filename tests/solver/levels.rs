@@ -2,12 +2,12 @@
 
 use bevy::{math::Vec3A, prelude::*};
 use bevy_drape::{
-    prelude::{ClothGrid, Fabric},
+    prelude::{ClothGrid, ClothSprings},
     solver::{Effort, LevelPass, Method, level::Transfer, measure},
 };
 
 use crate::{
-    bench_bed::{Bed, bare},
+    bench_bed::{Bed, springs, springs_in_air},
     lattices::{strewn, topology},
 };
 
@@ -59,7 +59,7 @@ fn levels_of_an_irregular_mesh_move_particles_between_their_nodes() {
 
 /// A square metre that hangs by two corners, with all that a game gives it but air.
 fn hung(mesh: Mesh) -> Bed {
-    let mut bed = Bed::new(mesh, Fabric::default().material().unwrap());
+    let mut bed = Bed::new(mesh, springs_in_air(ClothSprings::default()));
     let corners = [Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 0.0, -0.5), Vec3::ZERO, Vec3::X];
     let pins: Vec<u32> = (0..).zip(&bed.topology.rest).filter(|(_, p)| corners.contains(p)).map(|(i, _)| i).collect();
     assert_eq!(pins.len(), 2);
@@ -105,7 +105,7 @@ fn levels_leave_a_cloth_alone_that_is_nowhere_too_long() {
     let pressed = |bed: Bed| {
         let mut bed = Bed { gravity: Vec3A::ZERO, ..bed };
         bed.effort = Effort::fixed(1, bed.effort.levels);
-        bed.material = bare(Fabric::default());
+        bed.material = springs(ClothSprings::default());
         bed.particles.position.iter_mut().for_each(|p| *p = turn * *p * 0.9);
         for anchor in &mut bed.anchors {
             anchor.start = bed.particles.position[anchor.particle as usize];
@@ -130,13 +130,13 @@ fn an_effort_leaves_a_soft_cloth_without_tethers_the_stretch_of_its_weight() {
     };
     let mut failures = Vec::new();
     for stiffness in [50.0, 500.0] {
-        let fabric = Fabric {
+        let constants = ClothSprings {
             structural_stiffness: stiffness,
             shear_stiffness: stiffness / 10.0,
             bend_stiffness: 1.0,
-            ..Fabric::default()
+            ..ClothSprings::default()
         };
-        let bed = Bed::new(ClothGrid::new(1.0, 1.0, 32, 32), bare(fabric));
+        let bed = Bed::new(ClothGrid::new(1.0, 1.0, 32, 32), springs(constants));
         let expected = sunk(Bed { method: Method::Explicit, ..bed.clone() });
         for max_strain in [0.005, 0.001] {
             let effort = Effort::to_hold(max_strain, &bed.topology);

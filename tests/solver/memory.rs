@@ -3,23 +3,25 @@
 use bevy::{math::Vec3A, prelude::*};
 use bevy_drape::{
     build,
-    prelude::{ClothGrid, ClothGrip, Fabric},
+    prelude::{ClothGrid, ClothGrip, ClothSprings},
     solver::Particles,
 };
 
 use crate::{
-    bench_bed::{ALL, Bed},
+    bench_bed::{ALL, Bed, springs_in_air},
     grabs::hand,
     lattices::hexagons,
 };
 
 #[test]
 fn a_step_allocates_nothing_once_it_has_run() {
-    let damped = Fabric { structural_damping: 0.01, shear_damping: 0.01, ..Fabric::default() };
-    for (method, fabric) in ALL.into_iter().flat_map(|method| [(method, Fabric::default()), (method, damped.clone())]) {
+    let plain = ClothSprings::default();
+    let damped = ClothSprings { structural_damping: 0.01, shear_damping: 0.01, ..plain.clone() };
+    let materials = [plain, damped].map(springs_in_air);
+    for (method, material) in ALL.into_iter().flat_map(|method| materials.map(|material| (method, material))) {
         let sheets = [Mesh::from(ClothGrid::new(1.0, 1.0, 24, 24).lying()), hexagons(24).scaled_by(Vec3::splat(0.04))];
         for sheet in sheets {
-            let bed = Bed::new(sheet, fabric.material().unwrap()).pinned([0, 23]).tethered(&[0, 23]).with_levels();
+            let bed = Bed::new(sheet, material).pinned([0, 23]).tethered(&[0, 23]).with_levels();
             let mut bed = Bed { method, ..bed };
             bed.grabs = vec![hand(&bed, 100, [0.2, 0.3, 0.5], ClothGrip::default())];
             bed.step(1.0 / 60.0);
@@ -35,7 +37,7 @@ fn a_step_allocates_nothing_once_it_has_run() {
 
 #[test]
 fn a_grid_keeps_at_most_120_bytes_a_particle() {
-    let material = Fabric::default().material().unwrap();
+    let material = springs_in_air(ClothSprings::default());
     let topology = Bed::new(Mesh::from(ClothGrid::new(1.0, 1.0, 64, 64).lying()), material).topology;
     let info = allocation_counter::measure(|| {
         let rest: Vec<Vec3A> = topology.rest.iter().copied().map(Vec3A::from).collect();

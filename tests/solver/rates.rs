@@ -1,16 +1,16 @@
 //! The result doesn't hang on the time step or the number of substeps more than a game would notice.
 
 use bevy_drape::{
-    prelude::Fabric,
-    solver::{Effort, Method},
+    prelude::ClothSprings,
+    solver::{Effort, Material, Method},
 };
 
-use crate::bench_bed::{Bed, STABLE, rms};
+use crate::bench_bed::{Bed, STABLE, rms, springs_in_air};
 
 /// A cloth that hangs by two corners and has come to rest, with the levels that go with so many substeps.
 fn hung(method: Method, rate: f32, substeps: u32) -> Bed {
-    let fabric = Fabric { damping: 3.0, ..Fabric::default() };
-    let bed = Bed::lying(16, fabric.material().unwrap()).pinned([0, 15]).tethered(&[0, 15]);
+    let material = Material { damping: 3.0, ..springs_in_air(ClothSprings::default()) };
+    let bed = Bed::lying(16, material).pinned([0, 15]).tethered(&[0, 15]);
     let effort = Effort::fixed(substeps, Effort::levels_for(substeps, &bed.topology));
     let mut bed = Bed { method, effort, ..bed };
     for _ in 0..(8.0 * rate) as u32 {

@@ -1,15 +1,18 @@
 //! No particle gets away.
 
 use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::{prelude::Fabric, solver::Method};
+use bevy_drape::{
+    prelude::ClothSprings,
+    solver::{Material, Method},
+};
 
-use crate::bench_bed::{Bed, STABLE};
+use crate::bench_bed::{Bed, STABLE, springs_in_air};
 
 const FRAME: f32 = 1.0 / 60.0;
 
 /// A cloth held by two corners that move at `carried` (m/s) and that moves along with them.
 fn carried(method: Method, carried: Vec3A) -> Bed {
-    let material = Fabric { damping: 0.0, ..Fabric::default() }.material().unwrap();
+    let material = Material { damping: 0.0, ..springs_in_air(ClothSprings::default()) };
     let bed = Bed::lying(16, material).pinned([0, 15]).tethered(&[0, 15]).with_levels();
     let mut bed = Bed { method, max_velocity: 50.0, fluid_density: 0.0, ..bed };
     bed.anchors.iter_mut().for_each(|anchor| anchor.end = anchor.start + carried * FRAME);

@@ -1,11 +1,14 @@
 //! The explicit solver's own number of substeps.
 
-use bevy_drape::{prelude::Fabric, solver::Method};
+use bevy_drape::{
+    prelude::ClothSprings,
+    solver::{Elasticity, Method},
+};
 
-use crate::bench_bed::{Bed, bare};
+use crate::bench_bed::{Bed, springs};
 
 fn explicit(structural_stiffness: f32, max_substeps: u32) -> Bed {
-    let material = bare(Fabric { structural_stiffness, ..Fabric::default() });
+    let material = springs(ClothSprings { structural_stiffness, ..ClothSprings::default() });
     Bed { method: Method::Explicit, max_substeps, ..Bed::lying(12, material).pinned([0, 11]) }
 }
 
@@ -29,7 +32,8 @@ fn the_cap_softens_instead_of_exploding_and_says_so() {
 #[test]
 fn strong_damping_is_stable_too() {
     let mut bed = explicit(5000.0, 4096);
-    bed.material.springs.iter_mut().for_each(|spring| spring.damping = 5.0);
+    let Elasticity::Springs(constants) = &mut bed.material.elasticity else { panic!("they are springs") };
+    constants.iter_mut().for_each(|spring| spring.damping = 5.0);
     bed.run(2.0);
     assert!(bed.particles.is_finite() && bed.fastest() < 10.0, "{} m/s", bed.fastest());
 }

@@ -2,16 +2,22 @@
 
 use bevy::math::{Vec3A, ops};
 use bevy_drape::{
-    prelude::{ClothGrid, Fabric},
-    solver::Method,
+    prelude::{ClothGrid, ClothSprings, Fabric},
+    solver::{Material, Method},
 };
 
-use crate::bench_bed::{ALL, Bed, GRAVITY, bare};
+use crate::bench_bed::{ALL, Bed, GRAVITY, bare, springs};
+
+/// Every method with plain springs and with moduli.
+fn all() -> impl Iterator<Item = (Method, Material)> {
+    let materials = [springs(ClothSprings::default()), bare(Fabric::default())];
+    ALL.into_iter().flat_map(move |method| materials.map(|material| (method, material)))
+}
 
 #[test]
 fn a_free_cloth_falls_as_everything_does() {
-    for method in ALL {
-        let mut bed = Bed { method, ..Bed::lying(8, bare(Fabric::default())) };
+    for (method, material) in all() {
+        let mut bed = Bed { method, ..Bed::lying(8, material) };
         bed.run(1.0);
         let (height, speed) = (bed.centre().y, bed.particles.velocity[0].y);
         assert!((height + 0.5 * GRAVITY).abs() < 0.02, "{method:?}: {height} m");
@@ -22,7 +28,7 @@ fn a_free_cloth_falls_as_everything_does() {
 #[test]
 fn damping_slows_by_the_exponential_law() {
     for method in ALL {
-        let mut bed = Bed { method, gravity: Vec3A::ZERO, ..Bed::lying(4, bare(Fabric::default())) };
+        let mut bed = Bed { method, gravity: Vec3A::ZERO, ..Bed::lying(4, springs(ClothSprings::default())) };
         bed.material.damping = 2.0;
         bed.particles.velocity.fill(Vec3A::X);
         bed.run(0.5);
@@ -33,9 +39,13 @@ fn damping_slows_by_the_exponential_law() {
 
 /// A strip of two particles by two, pinned at the top: each thread is one spring with a weight.
 fn loaded_strip(method: Method, stiffness: f32) -> Bed {
-    let fabric =
-        Fabric { structural_stiffness: stiffness, shear_stiffness: 0.0, bend_stiffness: 0.0, ..Fabric::default() };
-    let bed = Bed::new(ClothGrid::new(1.0, 1.0, 2, 2), bare(fabric)).pinned([0, 1]);
+    let constants = ClothSprings {
+        structural_stiffness: stiffness,
+        shear_stiffness: 0.0,
+        bend_stiffness: 0.0,
+        ..ClothSprings::default()
+    };
+    let bed = Bed::new(ClothGrid::new(1.0, 1.0, 2, 2), springs(constants)).pinned([0, 1]);
     Bed { method, ..bed }
 }
 
@@ -77,8 +87,9 @@ fn a_weight_on_a_spring_swings_in_its_period() {
 fn damping_along_springs_takes_the_energy_of_stretching_and_leaves_the_fall_alone() {
     let mut failures = Vec::new();
     for method in ALL {
-        let fabric = Fabric { structural_damping: 0.5, shear_damping: 0.5, bend_damping: 0.5, ..Fabric::default() };
-        let mut bed = Bed { method, ..Bed::lying(6, bare(fabric)) };
+        let constants =
+            ClothSprings { structural_damping: 0.5, shear_damping: 0.5, bend_damping: 0.5, ..ClothSprings::default() };
+        let mut bed = Bed { method, ..Bed::lying(6, springs(constants)) };
         for (position, rest) in bed.particles.position.iter_mut().zip(&bed.topology.rest) {
             *position = Vec3A::from(*rest) * 1.1;
         }
@@ -96,8 +107,8 @@ fn damping_along_springs_takes_the_energy_of_stretching_and_leaves_the_fall_alon
 
 #[test]
 fn springs_conserve_momentum_and_angular_momentum() {
-    for method in ALL {
-        let mut bed = Bed { method, gravity: Vec3A::ZERO, ..Bed::lying(8, bare(Fabric::default())) };
+    for (method, material) in all() {
+        let mut bed = Bed { method, gravity: Vec3A::ZERO, ..Bed::lying(8, material) };
         for (velocity, position) in bed.particles.velocity.iter_mut().zip(&bed.particles.position) {
             *velocity = Vec3A::new(1.0, 0.5, position.x * 3.0) + Vec3A::Y.cross(*position);
         }
@@ -124,7 +135,7 @@ fn momenta(bed: &Bed) -> (Vec3A, Vec3A) {
 #[test]
 fn fixed_particles_have_no_velocity_and_stay_to_the_bit() {
     for method in ALL {
-        let mut bed = Bed { method, ..Bed::lying(8, bare(Fabric::default())).pinned([0, 7]) };
+        let mut bed = Bed { method, ..Bed::lying(8, springs(ClothSprings::default())).pinned([0, 7]) };
         let place = bed.particles.position[7];
         bed.particles.force[7] = Vec3A::splat(1e6);
         bed.run(1.0);

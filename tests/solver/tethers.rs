@@ -10,15 +10,15 @@ use bevy::{
 };
 use bevy_drape::{
     build,
-    prelude::{ClothGrid, Fabric},
+    prelude::{ClothGrid, ClothSprings},
     solver::Tethers,
 };
 
-use crate::bench_bed::{Bed, STABLE, bare};
+use crate::bench_bed::{Bed, STABLE, springs};
 
 #[test]
 fn on_a_flat_grid_a_tether_is_as_long_as_the_straight_line() {
-    let bed = Bed::lying(33, bare(Fabric::default()));
+    let bed = Bed::lying(33, springs(ClothSprings::default()));
     let tethers = build::tethers(&bed.topology, &[0, 32]);
     for particle in (0..33 * 33).filter(|particle| ![0, 32].contains(particle)) {
         assert!(tethers.iter().any(|tether| tether.particle == particle), "{particle} has none");
@@ -57,7 +57,7 @@ fn tube(radius: f32, height: f32, around: u32, rings: u32) -> Mesh {
 fn around_a_tube_a_tether_is_as_long_as_the_straight_line_on_its_unrolled_side() {
     for (around, rings) in [(48, 40), (24, 60), (96, 20)] {
         let (radius, height) = (0.25, 1.0);
-        let bed = Bed::new(tube(radius, height, around, rings), bare(Fabric::default()));
+        let bed = Bed::new(tube(radius, height, around, rings), springs(ClothSprings::default()));
         let pin = (rings / 3) * around + 5;
         let tethers = build::tethers(&bed.topology, &[pin]);
         assert_eq!(tethers.len(), bed.particles.len() - 1);
@@ -94,7 +94,7 @@ fn around_a_slit_a_tether_takes_the_long_way() {
         .copied()
         .collect();
     let mesh = mesh.with_inserted_indices(Indices::U32(kept));
-    let bed = Bed::new(mesh, bare(Fabric::default()));
+    let bed = Bed::new(mesh, springs(ClothSprings::default()));
     let (above, below) = (grid.vertex(0, slit_row), grid.vertex(0, slit_row + 1));
     let tethers = build::tethers(&bed.topology, &[above]);
     let tether = tethers.iter().find(|tether| tether.particle == below).expect("the sheet is in one piece");
@@ -107,7 +107,7 @@ fn a_particle_without_a_way_to_a_pin_has_no_tether() {
     let two = Mesh::from(ClothGrid::new(1.0, 1.0, 3, 3));
     let mut mesh = two.clone();
     mesh.merge(&two.translated_by(Vec3::X * 5.0)).expect("the same attributes");
-    let bed = Bed::new(mesh, bare(Fabric::default()));
+    let bed = Bed::new(mesh, springs(ClothSprings::default()));
     let tethers = build::tethers(&bed.topology, &[0]);
     assert_eq!(tethers.len(), 8);
     assert!(tethers.iter().all(|tether| tether.particle < 9));
@@ -116,7 +116,7 @@ fn a_particle_without_a_way_to_a_pin_has_no_tether() {
 #[test]
 fn tethers_keep_a_soft_cloth_within_its_length() {
     let reaches = STABLE.map(|method| {
-        let soft = bare(Fabric { structural_stiffness: 5.0, ..Fabric::default() });
+        let soft = springs(ClothSprings { structural_stiffness: 5.0, ..ClothSprings::default() });
         let mut bed = Bed::lying(16, soft).pinned([0, 15]).tethered(&[0, 15]).like_a_game(method);
         let mut farthest = 0.0_f32;
         for _ in 0..120 {

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 use bevy::{math::ops, prelude::*};
 use bevy_drape::{
-    prelude::{ClothGrid, Fabric},
+    prelude::{ClothGrid, ClothSprings},
     solver::{Effort, Method, SpringKind, Topology, Weave, measure},
 };
 use fastrand::Rng;
 
 use crate::{
-    bench_bed::{Bed, bare, rms},
+    bench_bed::{Bed, rms, springs, springs_in_air},
     lattices::{assemble, hexagons, strewn, topology},
 };
 
@@ -220,7 +220,7 @@ fn whatever_is_left_of_a_sheet_has_every_spring_once() {
 
 /// A sheet that hangs by the two particles that are farthest up, left and right.
 fn hung(mesh: Mesh) -> Bed {
-    let bed = Bed::new(mesh, bare(Fabric::default()));
+    let bed = Bed::new(mesh, springs(ClothSprings::default()));
     let highest = bed.topology.rest.iter().map(|p| p.y).fold(f32::MIN, f32::max);
     let top = || (0_u32..).zip(&bed.topology.rest).filter(|(_, p)| p.y > highest - 1e-4);
     let left = top().min_by(|(_, p), (_, q)| p.x.total_cmp(&q.x)).expect("a particle").0;
@@ -261,13 +261,13 @@ fn threads_move_as_the_textbook_says_when_steps_are_small() {
     let lying = |mesh: Mesh| mesh.rotated_by(Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2));
     let meshes = [("triangles", upright_triangles(10)), ("an L", ell(10)), ("a sleeve", sleeve(10, 10))];
     for ((name, mesh), damping) in meshes.iter().flat_map(|mesh| [(mesh, 0.0), (mesh, 0.05)]) {
-        let soft = Fabric {
+        let soft = ClothSprings {
             structural_stiffness: 200.0,
             structural_damping: damping,
             bend_damping: damping,
-            ..Fabric::default()
+            ..ClothSprings::default()
         };
-        let bed = Bed { tethers: None, material: bare(soft), ..hung(lying(mesh.clone())) }.with_substeps(64);
+        let bed = Bed { tethers: None, material: springs(soft), ..hung(lying(mesh.clone())) }.with_substeps(64);
         assert!(!bed.topology.braids.is_empty(), "{name}");
         let explicit = Bed { method: Method::Explicit, ..bed.clone() };
         let [strands, springs, explicit] = [bed.clone(), unravelled(bed.clone()), explicit].map(|mut bed| {
@@ -288,7 +288,7 @@ fn the_effort_to_hold_a_strain_holds_it_on_threads() {
     let mut failures = Vec::new();
     for (side, max_strain) in [(16, 0.01), (32, 0.01), (32, 0.005)] {
         let mut bed = hung(ell(side));
-        bed.material = Fabric::default().material().unwrap();
+        bed.material = springs_in_air(ClothSprings::default());
         bed.tether_slack = 0.002;
         bed.effort = Effort::to_hold(max_strain, &bed.topology);
         assert!(bed.effort.levels.is_empty());
