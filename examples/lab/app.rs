@@ -73,7 +73,8 @@ fn spawn_hanging(app: &mut App, options: &Options) {
             tether_slack: Some(options.tether_slack),
             ..default()
         },
-        Fabric { damping: options.damping, drag: 0.0, lift: 0.0, ..default() },
+        Fabric { density: scene::DENSITY, damping: options.damping, drag: 0.0, lift: 0.0, ..default() },
+        ClothSprings::default(),
         Pins::edge_corners(ClothEdge::Top),
     ));
 }
@@ -117,7 +118,8 @@ pub fn many_flags(cloths: u32, frames: u32, single_threaded: bool) -> Value {
         app.world_mut().spawn((
             Mesh3d(mesh.clone()),
             Cloth::default(),
-            Fabric { density: 0.12, bend_stiffness: 4.0, ..default() },
+            Fabric { density: 0.12, ..default() },
+            ClothSprings { bend_stiffness: 4.0, ..default() },
             Pins::edge(ClothEdge::Left),
             Transform::from_xyz(1.5 * (i % 10) as f32, 1.5, 1.5 * (i / 10) as f32),
         ));

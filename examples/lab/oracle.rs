@@ -86,9 +86,11 @@ impl Cloth {
     fn new(scene: &Scene, ctx: &StepContext) -> Self {
         let count = scene.particles.len();
         let springs = scene.topology.batches.iter().flat_map(|batch| {
-            let stiffness = ctx.material.spring(batch.kind).stiffness.into();
             let springs = scene.topology.springs[batch.range.clone()].iter();
-            springs.map(move |s| Spring { a: s.a, b: s.b, rest: s.rest.into(), stiffness })
+            springs.map(move |s| {
+                let stiffness = ctx.material.spring(batch.kind, s).constants.stiffness.into();
+                Spring { a: s.a, b: s.b, rest: s.rest.into(), stiffness }
+            })
         });
         Self {
             springs: springs.collect(),

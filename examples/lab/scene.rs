@@ -10,8 +10,8 @@ use bevy::{
 use bevy_drape::{
     build,
     solver::{
-        Anchor, ColliderShape, Effort, Material, Method, Obstacle, Particles, SpringConstants, SpringKind, StepContext,
-        Tethers, Topology,
+        Anchor, ColliderShape, Effort, Elasticity, Material, Method, Obstacle, Particles, SpringConstants, SpringKind,
+        StepContext, Tethers, Topology,
     },
 };
 
@@ -25,7 +25,7 @@ use super::{
 pub const FRAME: f32 = 1.0 / 60.0;
 
 /// Areal density, kg/m².
-const DENSITY: f32 = 0.2;
+pub const DENSITY: f32 = 0.2;
 
 /// A cloth and all that acts on it.
 pub struct Scene {
@@ -69,6 +69,7 @@ impl Scene {
             max_velocity: 50.0,
             tethers: self.tethers.as_ref(),
             tether_slack: options.tether_slack,
+            margin: 0.0,
             obstacles: &self.obstacles,
             fluid_density: 0.0,
             winds: &[],
@@ -124,13 +125,9 @@ fn free_cloth(options: &Options, mesh: &MeshSource) -> io::Result<(Scene, Top)> 
     let build_ms = begun.elapsed().as_secs_f64() * 1e3;
     let spring = |kind: SpringKind| SpringConstants { stiffness: options.stiffness[kind.index()], damping: 0.0 };
     let material = Material {
-        density: DENSITY,
-        springs: SpringKind::ALL.map(spring),
         damping: options.damping,
-        thickness: 0.0,
         friction: 0.5,
-        drag: 0.0,
-        lift: 0.0,
+        ..Material::bare(DENSITY, Elasticity::Springs(SpringKind::ALL.map(spring)))
     };
     let mut particles = Particles::at_rest(rippled(&topology, &sheet.top), &topology, &material);
     if let MeshSource::Grid = mesh {
