@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     cloth::{Cloth, ClothGravity, ClothSolver, ClothStatus},
-    solver::{Strain},
+    solver::Strain,
     state::ClothState,
 };
 

@@ -4,7 +4,7 @@ use bevy::math::Vec3A;
 
 use super::{
     Instructions, Lanes,
-    constraint::{level::Levels, spring::Beads, tether::PinPlaces},
+    constraint::{beads::Beads, level::Levels, tether::PinPlaces},
     force::wind::Air,
     lanes::Points,
     share::Bench,

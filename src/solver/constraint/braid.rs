@@ -3,7 +3,7 @@
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    spring::Beads,
+    beads::Beads,
     strand::{Both, Pack},
     weave::{Loom, Yarn},
 };

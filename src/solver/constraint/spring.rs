@@ -15,10 +15,10 @@
 use bevy::math::Vec3A;
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
-use super::braid::Strung;
+use super::beads::Beads;
 use crate::solver::{
-    Lanes, Material, Spring, SpringBatch, SpringConstants, SpringKind, Topology,
-    lanes::{Block, apart, together},
+    Lanes, Spring, SpringConstants,
+    lanes::Block,
     simd::{Instructions, LANES, Lane, SHORTEST, Vec3Wide, Vec3x8, Wide, lane},
 };
 
@@ -39,9 +39,6 @@ impl Scaled {
         self.k + self.c > 0.0
     }
 }
-
-/// Springs are few where there are so many particles for each: going to the beads and back would take longer.
-const FEW: usize = 4;
 
 /// One end of springs side by side.
 #[derive(Clone, Copy, Debug)]
@@ -76,142 +73,32 @@ pub(in crate::solver) fn solve_abreast<S: Simd, F: Wide<S>, const DAMPED: bool>(
     [a.position - along * (per_length * a.inverse_mass), b.position + along * (per_length * b.inverse_mass)]
 }
 
-/// The particles one by one: what springs between any two of them read and write.
-#[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Beads {
-    /// Position, m, and inverse mass, 1/kg.
-    now: Vec<[f32; 4]>,
-    /// Position before the substep, m; only where springs are damped.
-    before: Vec<[f32; 4]>,
-}
-
-impl Beads {
-    #[inline(always)]
-    fn read<S: Simd, const DAMPED: bool>(&mut self, simd: S, lanes: &Lanes) {
-        // One more: missing ends of springs are there.
-        let count = lanes.order.particle_count() + 1;
-        self.now.resize(count, [0.0; 4]);
-        let blocks = lanes.order.blocks().zip(&lanes.position.0).zip(&lanes.inverse_mass);
-        for (((first, count), [x, y, z]), masses) in blocks {
-            let beads = together([lane(simd, x), lane(simd, y), lane(simd, z), lane(simd, masses)]);
-            self.now[first..first + count].copy_from_slice(&beads[..count]);
-        }
-        if DAMPED {
-            self.before.resize(count, [0.0; 4]);
-            for ((first, count), [x, y, z]) in lanes.order.blocks().zip(&lanes.previous.0) {
-                let z = lane(simd, z);
-                let beads = together([lane(simd, x), lane(simd, y), z, z]);
-                self.before[first..first + count].copy_from_slice(&beads[..count]);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn write<S: Simd>(&self, simd: S, lanes: &mut Lanes) {
-        for ((first, count), block) in lanes.order.blocks().zip(&mut lanes.position.0) {
-            let mut beads = [[0.0; 4]; LANES];
-            beads[..count].copy_from_slice(&self.now[first..first + count]);
-            let [a, b, c, d, e, f, g, h] = &beads;
-            let [x, y, z, _] = apart(simd, [a, b, c, d, e, f, g, h]);
-            *block = [x.into(), y.into(), z.into()];
-        }
+/// Solves the springs of one batch once.
+pub(in crate::solver) fn solve(beads: &mut Beads, springs: &[Spring], constants: Scaled, instructions: Instructions) {
+    let level = instructions.level();
+    if constants.c > 0.0 {
+        dispatch!(level, simd => solve_batch::<_, true>(simd, beads, springs, constants));
+    } else {
+        dispatch!(level, simd => solve_batch::<_, false>(simd, beads, springs, constants));
     }
 }
 
-impl Beads {
-    /// One end of eight springs, at eight particles.
-    #[inline(always)]
-    pub fn end<S: Simd, const DAMPED: bool>(&self, simd: S, particles: &[u32; LANES]) -> End<f32x8<S>> {
-        let [x, y, z, inverse_mass] = gather(simd, &self.now, particles);
-        let position = Vec3x8 { x, y, z };
-        let previous = if DAMPED {
-            let [x, y, z, _] = gather(simd, &self.before, particles);
-            Vec3x8 { x, y, z }
-        } else {
-            position
-        };
-        End { position, previous, inverse_mass }
-    }
-
-    /// Moves eight particles.
-    #[inline(always)]
-    pub fn put<S: Simd>(&mut self, particles: &[u32; LANES], Vec3x8 { x, y, z }: Vec3x8<S>, inverse_mass: f32x8<S>) {
-        for (&i, bead) in particles.iter().zip(together([x, y, z, inverse_mass])) {
-            self.now[i as usize] = bead;
-        }
-    }
-}
-
-#[inline(always)]
-fn gather<S: Simd>(simd: S, beads: &[[f32; 4]], [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [f32x8<S>; 4] {
-    apart(
-        simd,
-        [
-            bead(beads, a),
-            bead(beads, b),
-            bead(beads, c),
-            bead(beads, d),
-            bead(beads, e),
-            bead(beads, f),
-            bead(beads, g),
-            bead(beads, h),
-        ],
-    )
-}
-
-#[inline(always)]
-fn bead<'a>(beads: &'a [[f32; 4]], i: &u32) -> &'a [f32; 4] {
-    &beads[*i as usize]
-}
-
-/// Solves all springs of `batches` once, batch after batch, in a substep of `h` seconds, and then the braids.
-#[expect(clippy::too_many_arguments, reason = "springs and braids share one way to the beads and back")]
-pub(in crate::solver) fn solve<'a>(
+/// The same for springs that are few among many particles, as along the seam of a tube: the particles stay where they
+/// are.
+pub(in crate::solver) fn solve_few(
     lanes: &mut Lanes,
-    topology: &Topology,
-    batches: impl Iterator<Item = &'a SpringBatch> + Clone,
-    material: &Material,
-    h: f32,
-    beads: &mut Beads,
-    braids: Option<Strung>,
+    springs: &[Spring],
+    constants: Scaled,
     instructions: Instructions,
 ) {
     let level = instructions.level();
-    let batches = batches.map(|batch| (batch, Scaled::new(material.alike(batch.kind), h)));
-    let batches = batches.filter(|(_, constants)| constants.acts());
-    let count: usize = batches.clone().map(|(batch, _)| batch.range.len()).sum();
-    if braids.is_none() && count * FEW <= lanes.order.particle_count() {
-        for (batch, constants) in batches {
-            let springs = &topology.springs[batch.range.clone()];
-            if constants.c > 0.0 {
-                dispatch!(level, simd => solve_scattered::<_, true>(simd, lanes, springs, constants));
-            } else {
-                dispatch!(level, simd => solve_scattered::<_, false>(simd, lanes, springs, constants));
-            }
-        }
-        return;
-    }
-    if SpringKind::ALL.iter().any(|&kind| material.alike(kind).damping > 0.0) {
-        dispatch!(level, simd => beads.read::<_, true>(simd, lanes));
+    if constants.c > 0.0 {
+        dispatch!(level, simd => solve_scattered::<_, true>(simd, lanes, springs, constants));
     } else {
-        dispatch!(level, simd => beads.read::<_, false>(simd, lanes));
+        dispatch!(level, simd => solve_scattered::<_, false>(simd, lanes, springs, constants));
     }
-    for (batch, constants) in batches {
-        let springs = &topology.springs[batch.range.clone()];
-        if constants.c > 0.0 {
-            dispatch!(level, simd => solve_batch::<_, true>(simd, beads, springs, constants));
-        } else {
-            dispatch!(level, simd => solve_batch::<_, false>(simd, beads, springs, constants));
-        }
-    }
-    if let Some(strung) = braids {
-        strung.solve(beads, instructions);
-    }
-    dispatch!(level, simd => beads.write(simd, lanes));
 }
 
-/// Springs of one batch that are few among many particles, as along the seam of a tube: the particles stay where they
-/// are.
 #[inline(always)]
 fn solve_scattered<S: Simd, const DAMPED: bool>(simd: S, lanes: &mut Lanes, springs: &[Spring], constants: Scaled) {
     for springs in springs.chunks(LANES) {
@@ -256,7 +143,7 @@ fn solve_batch<S: Simd, const DAMPED: bool>(simd: S, beads: &mut Beads, springs:
         solve_gathered::<S, DAMPED>(simd, beads, springs, constants);
     }
     if !rest.is_empty() {
-        let nobody = beads.now.len() as u32 - 1;
+        let nobody = beads.nobody();
         let mut springs = [Spring { a: nobody, b: nobody, ..Spring::default() }; LANES];
         springs[..rest.len()].copy_from_slice(rest);
         solve_gathered::<S, DAMPED>(simd, beads, &springs, constants);
@@ -288,9 +175,9 @@ pub fn strain(position: &[Vec3A], spring: &Spring) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::{Elasticity, Particles, order::Order};
+    use crate::solver::{Particles, order::Order};
 
-    fn pair(distance: f32) -> (Lanes, Topology) {
+    fn pair(distance: f32) -> Lanes {
         let mut lanes = Lanes::default();
         let particles = Particles {
             position: vec![Vec3A::ZERO, Vec3A::X * distance],
@@ -300,35 +187,28 @@ mod tests {
         };
         lanes.load(&particles, Order::plain(2), Instructions::Best);
         lanes.previous = lanes.position.clone();
-        let topology = Topology {
-            springs: vec![Spring { a: 0, b: 1, rest: 1.0, ..Spring::default() }],
-            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1, woven: false, carries: false }],
-            areas: vec![1.0; 2],
-            ..Default::default()
-        };
-        (lanes, topology)
+        lanes
     }
 
-    fn solve_once(lanes: &mut Lanes, topology: &Topology, stiffness: f32, damping: f32) {
-        let mut springs = [SpringConstants::default(); 3];
-        springs[0] = SpringConstants { stiffness, damping };
-        let material = Material::bare(1.0, Elasticity::Springs(springs));
-        solve(
-            lanes,
-            topology,
-            topology.batches.iter(),
-            &material,
-            0.1,
-            &mut Beads::default(),
-            None,
-            Instructions::Best,
+    fn solve_once(lanes: &mut Lanes, stiffness: f32, damping: f32) {
+        let springs = [Spring { a: 0, b: 1, rest: 1.0, ..Spring::default() }];
+        let constants = Scaled::new(SpringConstants { stiffness, damping }, 0.1);
+        let few = &mut lanes.clone();
+        solve_few(few, &springs, constants, Instructions::Best);
+        let mut beads = Beads::default();
+        beads.read(lanes, damping > 0.0, Instructions::Best);
+        solve(&mut beads, &springs, constants, Instructions::Best);
+        beads.write(lanes, Instructions::Best);
+        assert_eq!(
+            few.position.get(1).to_array().map(f32::to_bits),
+            lanes.position.get(1).to_array().map(f32::to_bits)
         );
     }
 
     #[test]
     fn a_spring_moves_by_the_implicit_euler_answer() {
-        let (mut lanes, topology) = pair(1.5);
-        solve_once(&mut lanes, &topology, 100.0, 3.0);
+        let mut lanes = pair(1.5);
+        solve_once(&mut lanes, 100.0, 3.0);
         // Implicit Euler for m = 0.5 kg: m Δx = h² (-k (s + Δx) - c Δx / h), with the stretch s = 0.5 m.
         let expected = -100.0 * 0.01 * 0.5 / (0.5 + 100.0 * 0.01 + 3.0 * 0.1);
         assert!((lanes.position.get(1).x - 1.5 - expected).abs() < 1e-6);
@@ -337,9 +217,9 @@ mod tests {
 
     #[test]
     fn springs_without_stiffness_or_length_stay_finite() {
-        let (mut lanes, topology) = pair(0.0);
-        solve_once(&mut lanes, &topology, 0.0, 0.0);
-        solve_once(&mut lanes, &topology, 1e9, 1e9);
+        let mut lanes = pair(0.0);
+        solve_once(&mut lanes, 0.0, 0.0);
+        solve_once(&mut lanes, 1e9, 1e9);
         assert!(lanes.position.get(1).is_finite());
     }
 }
