@@ -4,6 +4,7 @@ use bevy::{math::Mat3A, prelude::*};
 
 use crate::{error::ClothError, solver::Topology};
 
+mod bends;
 mod braids;
 mod candidate;
 mod cells;

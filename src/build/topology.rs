@@ -3,13 +3,15 @@
 use bevy::prelude::*;
 
 use super::{
-    braids,
+    bends, braids,
     cells::{self, Cells},
     chart, coloring,
     edges::Edges,
     grouped::Grouped,
     lattice::{self, Rectangle},
-    levels, shares, springs, threads,
+    levels,
+    plate::Plate,
+    shares, springs, threads,
 };
 use crate::{
     error::ClothError,
@@ -77,6 +79,10 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
             .map(|chart| levels::of_chart(&rest, &triangles, &chart))
             .unwrap_or_default(),
     };
+    let (bends, bend_batches) = match (&lattice, &rectangle) {
+        (Some(_), Some(rectangle)) => bends::of_plate(&Plate::new(&rest, rectangle), rest.len()),
+        _ => (Vec::new(), Vec::new()),
+    };
     let (springs, batches) = coloring::batches(rest.len(), &all, &woven);
     let triangle_areas: Vec<f32> = triangles.iter().map(|triangle| triangle_area(&rest, triangle)).collect();
     let areas = particle_areas(rest.len(), &triangles, &triangle_areas);
@@ -91,6 +97,8 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
         lattice,
         braids,
         levels,
+        bends,
+        bend_batches,
         ..Topology::default()
     }
 }

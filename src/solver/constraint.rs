@@ -1,6 +1,7 @@
 //! What holds particles together: each constraint moves positions, once a substep.
 
 pub(super) mod anchor;
+pub(super) mod beads;
 pub(super) mod braid;
 pub(super) mod curl;
 pub(super) mod curvature;
@@ -8,6 +9,7 @@ pub(super) mod diagonal;
 pub mod grab;
 pub(super) mod law;
 pub(super) mod level;
+pub(super) mod loose;
 pub mod spring;
 pub(super) mod strand;
 pub mod tether;

@@ -165,15 +165,11 @@ impl Material {
         }
     }
 
-    /// What springs that are alike would be, in a stage where the solver doesn't know better.
-    pub fn alike(&self, kind: SpringKind) -> SpringConstants {
+    /// Whether anything in it damps its deformation.
+    pub fn is_damped(&self) -> bool {
         match &self.elasticity {
-            Elasticity::Springs(constants) => constants[kind.index()],
-            Elasticity::Moduli(moduli) => {
-                let thread = self.thread_stiffness().stiffness - moduli.shear;
-                let stiffness = [thread, moduli.shear, 0.0][kind.index()];
-                SpringConstants { stiffness, damping: stiffness * moduli.stretch_damping }
-            }
+            Elasticity::Springs(constants) => constants.iter().any(|constants| constants.damping > 0.0),
+            Elasticity::Moduli(moduli) => moduli.stretch_damping + moduli.bend_damping > 0.0,
         }
     }
 

@@ -4,7 +4,7 @@ use bevy::math::Vec3A;
 
 use super::{
     Instructions, Lanes,
-    constraint::{curl::Curls, level::Levels, spring::Beads, tether::PinPlaces},
+    constraint::{beads::Beads, curl::Curls, level::Levels, tether::PinPlaces},
     force::wind::Air,
     lanes::Points,
     share::Bench,

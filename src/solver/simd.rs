@@ -41,9 +41,6 @@ impl Instructions {
 ///
 /// Sixteen pay where each number waits for the one before, as along a thread: the units that divide would be idle.
 pub(super) trait Wide<S: Simd>: SimdFloat<S, Element = f32> {
-    /// Number of blocks.
-    const PACKS: usize;
-
     /// Takes over the lanes at `at`, and of two blocks also those `stride` further on.
     fn load(simd: S, lanes: &[Lane], at: usize, stride: usize) -> Self;
 
@@ -52,8 +49,6 @@ pub(super) trait Wide<S: Simd>: SimdFloat<S, Element = f32> {
 }
 
 impl<S: Simd> Wide<S> for f32x8<S> {
-    const PACKS: usize = 1;
-
     #[inline(always)]
     fn load(simd: S, lanes: &[Lane], at: usize, _: usize) -> Self {
         lane(simd, &lanes[at])
@@ -66,8 +61,6 @@ impl<S: Simd> Wide<S> for f32x8<S> {
 }
 
 impl<S: Simd> Wide<S> for f32x16<S> {
-    const PACKS: usize = 2;
-
     #[inline(always)]
     fn load(simd: S, lanes: &[Lane], at: usize, stride: usize) -> Self {
         lane(simd, &lanes[at]).combine(lane(simd, &lanes[at + stride]))

@@ -3,8 +3,8 @@
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
+    beads::Beads,
     law::{AnyThreads, Laws},
-    spring::Beads,
     strand::{Pack, Rows, Springs},
     weave::{Loom, Yarn},
 };

@@ -1,10 +1,10 @@
 //! How springs side by side answer to being stretched.
 
-use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, prelude::*};
 
 use crate::solver::{
-    Grain, Moduli, SpringConstants,
-    simd::{Lane, Wide},
+    Grain, Moduli, Spring, SpringConstants,
+    simd::{LANES, Lane, SHORTEST, Wide, lane},
 };
 
 /// k h² and c h of springs that are alike in a substep of h seconds, kg.
@@ -73,6 +73,18 @@ impl Grading {
     }
 }
 
+impl Grading {
+    /// Along both directions, by [`Grain::index`].
+    pub fn both(moduli: &Moduli, h: f32) -> [Self; 2] {
+        [Grain::Warp, Grain::Weft].map(|grain| Self::new(moduli, grain, h))
+    }
+
+    /// The same without what only threads do: stiffen, and give way where they are pressed together.
+    pub fn linear(self) -> Self {
+        Self { half_stiffening: 0.0, compression: 1.0, ..self }
+    }
+}
+
 /// What some springs of a sheet's threads follow.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::solver) struct Graded<F> {
@@ -91,6 +103,37 @@ impl<S: Simd, F: Wide<S>> Law<S, F> for Graded<F> {
         let taut = rest + (length - rest) * half_stiffening;
         let k = per_length * length.simd_gt(rest).select(taut, rest * compression);
         [k, k * damping]
+    }
+}
+
+/// The laws of springs that lie anywhere.
+pub(in crate::solver) trait LooseLaws: Copy {
+    fn law<S: Simd>(&self, simd: S, springs: &[Spring; LANES]) -> impl Law<S, f32x8<S>>;
+}
+
+impl LooseLaws for Scaled {
+    #[inline(always)]
+    fn law<S: Simd>(&self, _: S, _: &[Spring; LANES]) -> impl Law<S, f32x8<S>> {
+        *self
+    }
+}
+
+/// Springs of a sheet, by [`Grain::index`].
+impl LooseLaws for [Grading; 2] {
+    #[inline(always)]
+    fn law<S: Simd>(&self, simd: S, springs: &[Spring; LANES]) -> impl Law<S, f32x8<S>> {
+        let [along_warp, along_weft] = *self;
+        let (mut rest, mut shares) = (Lane::default(), [Lane::default(); 3]);
+        for (i, spring) in springs.iter().enumerate() {
+            rest[i] = spring.rest;
+            (shares[0][i], shares[1][i], shares[2][i]) = spring.share.into();
+        }
+        let [warp, weft, shear] = [lane(simd, &shares[0]), lane(simd, &shares[1]), lane(simd, &shares[2])];
+        let k = warp * along_warp.stretch + weft * along_weft.stretch + shear * along_warp.shear;
+        let per_length = k.max(f32x8::splat(simd, 0.0)) / lane(simd, &rest).max(f32x8::splat(simd, SHORTEST));
+        let stiffening = |grading: Grading| f32x8::splat(simd, grading.half_stiffening);
+        let half_stiffening = warp.simd_ge(weft).select(stiffening(along_warp), stiffening(along_weft));
+        Graded { per_length, half_stiffening, compression: along_warp.compression, damping: along_warp.damping }
     }
 }
 

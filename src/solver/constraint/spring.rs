@@ -16,17 +16,14 @@ use bevy::math::Vec3A;
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    braid::Strung,
-    law::{Law, Scaled},
+    beads::Beads,
+    law::{Grading, Law, LooseLaws, Scaled},
 };
 use crate::solver::{
-    Lanes, Material, Spring, SpringBatch, SpringConstants, SpringKind, Topology,
-    lanes::{Block, apart, together},
+    Elasticity, Lanes, Material, Spring, SpringBatch, SpringKind,
+    lanes::Block,
     simd::{Instructions, LANES, Lane, SHORTEST, Vec3Wide, Vec3x8, Wide, lane},
 };
-
-/// Springs are few where there are so many particles for each: going to the beads and back would take longer.
-const FEW: usize = 4;
 
 /// One end of springs side by side.
 #[derive(Clone, Copy, Debug)]
@@ -64,147 +61,70 @@ pub(in crate::solver) fn solve_abreast<S: Simd, F: Wide<S>, const DAMPED: bool>(
     [a.position - along * (per_length * a.inverse_mass), b.position + along * (per_length * b.inverse_mass)]
 }
 
-/// The particles one by one: what springs between any two of them read and write.
-#[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Beads {
-    /// Position, m, and inverse mass, 1/kg.
-    now: Vec<[f32; 4]>,
-    /// Position before the substep, m; only where springs are damped.
-    before: Vec<[f32; 4]>,
+/// What the springs of one batch follow.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) enum BatchLaw {
+    /// All are alike.
+    Alike(Scaled),
+    /// Each has its share of a sheet.
+    Sheet([Grading; 2]),
 }
 
-impl Beads {
-    #[inline(always)]
-    fn read<S: Simd, const DAMPED: bool>(&mut self, simd: S, lanes: &Lanes) {
-        // One more: missing ends of springs are there.
-        let count = lanes.order.particle_count() + 1;
-        self.now.resize(count, [0.0; 4]);
-        let blocks = lanes.order.blocks().zip(&lanes.position.0).zip(&lanes.inverse_mass);
-        for (((first, count), [x, y, z]), masses) in blocks {
-            let beads = together([lane(simd, x), lane(simd, y), lane(simd, z), lane(simd, masses)]);
-            self.now[first..first + count].copy_from_slice(&beads[..count]);
-        }
-        if DAMPED {
-            self.before.resize(count, [0.0; 4]);
-            for ((first, count), [x, y, z]) in lanes.order.blocks().zip(&lanes.previous.0) {
-                let z = lane(simd, z);
-                let beads = together([lane(simd, x), lane(simd, y), z, z]);
-                self.before[first..first + count].copy_from_slice(&beads[..count]);
+impl BatchLaw {
+    /// None where they do nothing.
+    pub fn new(material: &Material, batch: &SpringBatch, h: f32) -> Option<Self> {
+        match &material.elasticity {
+            Elasticity::Springs(constants) => {
+                Some(Scaled::new(constants[batch.kind.index()], h)).filter(Scaled::acts).map(Self::Alike)
             }
+            Elasticity::Moduli(moduli) => batch.carries.then(|| {
+                let gradings = Grading::both(moduli, h);
+                let is_thread = batch.kind == SpringKind::Structural;
+                Self::Sheet(if is_thread { gradings } else { gradings.map(Grading::linear) })
+            }),
         }
     }
 
-    #[inline(always)]
-    fn write<S: Simd>(&self, simd: S, lanes: &mut Lanes) {
-        for ((first, count), block) in lanes.order.blocks().zip(&mut lanes.position.0) {
-            let mut beads = [[0.0; 4]; LANES];
-            beads[..count].copy_from_slice(&self.now[first..first + count]);
-            let [a, b, c, d, e, f, g, h] = &beads;
-            let [x, y, z, _] = apart(simd, [a, b, c, d, e, f, g, h]);
-            *block = [x.into(), y.into(), z.into()];
-        }
-    }
-}
-
-impl Beads {
-    /// One end of eight springs, at eight particles.
-    #[inline(always)]
-    pub fn end<S: Simd, const DAMPED: bool>(&self, simd: S, particles: &[u32; LANES]) -> End<f32x8<S>> {
-        let [x, y, z, inverse_mass] = gather(simd, &self.now, particles);
-        let position = Vec3x8 { x, y, z };
-        let previous = if DAMPED {
-            let [x, y, z, _] = gather(simd, &self.before, particles);
-            Vec3x8 { x, y, z }
-        } else {
-            position
-        };
-        End { position, previous, inverse_mass }
-    }
-
-    /// Moves eight particles.
-    #[inline(always)]
-    pub fn put<S: Simd>(&mut self, particles: &[u32; LANES], Vec3x8 { x, y, z }: Vec3x8<S>, inverse_mass: f32x8<S>) {
-        for (&i, bead) in particles.iter().zip(together([x, y, z, inverse_mass])) {
-            self.now[i as usize] = bead;
+    /// Whether it needs to know where the particles were before the substep.
+    pub fn is_damped(&self) -> bool {
+        match self {
+            Self::Alike(constants) => constants.c > 0.0,
+            Self::Sheet([warp, _]) => warp.damping > 0.0,
         }
     }
 }
 
-#[inline(always)]
-fn gather<S: Simd>(simd: S, beads: &[[f32; 4]], [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [f32x8<S>; 4] {
-    apart(
-        simd,
-        [
-            bead(beads, a),
-            bead(beads, b),
-            bead(beads, c),
-            bead(beads, d),
-            bead(beads, e),
-            bead(beads, f),
-            bead(beads, g),
-            bead(beads, h),
-        ],
-    )
-}
-
-#[inline(always)]
-fn bead<'a>(beads: &'a [[f32; 4]], i: &u32) -> &'a [f32; 4] {
-    &beads[*i as usize]
-}
-
-/// Solves all springs of `batches` once, batch after batch, in a substep of `h` seconds, and then the braids.
-#[expect(clippy::too_many_arguments, reason = "springs and braids share one way to the beads and back")]
-pub(in crate::solver) fn solve<'a>(
-    lanes: &mut Lanes,
-    topology: &Topology,
-    batches: impl Iterator<Item = &'a SpringBatch> + Clone,
-    material: &Material,
-    h: f32,
-    beads: &mut Beads,
-    braids: Option<Strung>,
-    instructions: Instructions,
-) {
+/// Solves the springs of one batch once.
+pub(in crate::solver) fn solve(beads: &mut Beads, springs: &[Spring], law: BatchLaw, instructions: Instructions) {
     let level = instructions.level();
-    let batches = batches.map(|batch| (batch, Scaled::new(material.alike(batch.kind), h)));
-    let batches = batches.filter(|(_, constants)| constants.acts());
-    let count: usize = batches.clone().map(|(batch, _)| batch.range.len()).sum();
-    if braids.is_none() && count * FEW <= lanes.order.particle_count() {
-        for (batch, constants) in batches {
-            let springs = &topology.springs[batch.range.clone()];
-            if constants.c > 0.0 {
-                dispatch!(level, simd => solve_scattered::<_, true>(simd, lanes, springs, constants));
-            } else {
-                dispatch!(level, simd => solve_scattered::<_, false>(simd, lanes, springs, constants));
-            }
+    match (law, law.is_damped()) {
+        (BatchLaw::Alike(law), false) => {
+            dispatch!(level, simd => solve_batch::<_, _, false>(simd, beads, springs, law))
         }
-        return;
-    }
-    if SpringKind::ALL.iter().any(|&kind| material.alike(kind).damping > 0.0) {
-        dispatch!(level, simd => beads.read::<_, true>(simd, lanes));
-    } else {
-        dispatch!(level, simd => beads.read::<_, false>(simd, lanes));
-    }
-    for (batch, constants) in batches {
-        let springs = &topology.springs[batch.range.clone()];
-        if constants.c > 0.0 {
-            dispatch!(level, simd => solve_batch::<_, true>(simd, beads, springs, constants));
-        } else {
-            dispatch!(level, simd => solve_batch::<_, false>(simd, beads, springs, constants));
+        (BatchLaw::Alike(law), true) => dispatch!(level, simd => solve_batch::<_, _, true>(simd, beads, springs, law)),
+        (BatchLaw::Sheet(law), false) => {
+            dispatch!(level, simd => solve_batch::<_, _, false>(simd, beads, springs, law))
         }
+        (BatchLaw::Sheet(law), true) => dispatch!(level, simd => solve_batch::<_, _, true>(simd, beads, springs, law)),
     }
-    if let Some(strung) = braids {
-        strung.solve(beads, instructions);
-    }
-    dispatch!(level, simd => beads.write(simd, lanes));
 }
 
-/// Springs of one batch that are few among many particles, as along the seam of a tube: the particles stay where they
+/// The same for springs that are few among many particles, as along the seam of a tube: the particles stay where they
 /// are.
+pub(in crate::solver) fn solve_few(lanes: &mut Lanes, springs: &[Spring], law: BatchLaw, instructions: Instructions) {
+    let level = instructions.level();
+    match law {
+        BatchLaw::Alike(law) => dispatch!(level, simd => solve_scattered(simd, lanes, springs, law)),
+        BatchLaw::Sheet(law) => dispatch!(level, simd => solve_scattered(simd, lanes, springs, law)),
+    }
+}
+
 #[inline(always)]
-fn solve_scattered<S: Simd, const DAMPED: bool>(simd: S, lanes: &mut Lanes, springs: &[Spring], constants: Scaled) {
+fn solve_scattered<S: Simd>(simd: S, lanes: &mut Lanes, springs: &[Spring], laws: impl LooseLaws) {
     for springs in springs.chunks(LANES) {
         let mut ends = [(Block::default(), Block::default(), Lane::default()); 2];
-        let mut rest = Lane::default();
+        let (mut rest, mut eight) = (Lane::default(), [Spring::default(); LANES]);
+        eight[..springs.len()].copy_from_slice(springs);
         for (i, spring) in springs.iter().enumerate() {
             rest[i] = spring.rest;
             for ((position, previous, inverse_mass), particle) in ends.iter_mut().zip([spring.a, spring.b]) {
@@ -215,7 +135,8 @@ fn solve_scattered<S: Simd, const DAMPED: bool>(simd: S, lanes: &mut Lanes, spri
             }
         }
         let [a, b] = &ends;
-        let moved = solve_abreast::<_, _, DAMPED>(simd, end(simd, a), end(simd, b), lane(simd, &rest), constants);
+        let law = laws.law(simd, &eight);
+        let moved = solve_abreast::<_, _, true>(simd, end(simd, a), end(simd, b), lane(simd, &rest), law);
         for (at, end) in moved.into_iter().zip(&mut ends) {
             at.store(&mut end.0);
         }
@@ -238,32 +159,33 @@ fn end<S: Simd>(simd: S, (position, previous, inverse_mass): &(Block, Block, Lan
 
 /// Springs of one batch share no particle, so any eight of them may be solved side by side.
 #[inline(always)]
-fn solve_batch<S: Simd, const DAMPED: bool>(simd: S, beads: &mut Beads, springs: &[Spring], constants: Scaled) {
+fn solve_batch<S: Simd, L: LooseLaws, const DAMPED: bool>(simd: S, beads: &mut Beads, springs: &[Spring], laws: L) {
     let (groups, rest) = springs.as_chunks::<LANES>();
     for springs in groups {
-        solve_gathered::<S, DAMPED>(simd, beads, springs, constants);
+        solve_gathered::<S, L, DAMPED>(simd, beads, springs, laws);
     }
     if !rest.is_empty() {
-        let nobody = beads.now.len() as u32 - 1;
+        let nobody = beads.nobody();
         let mut springs = [Spring { a: nobody, b: nobody, ..Spring::default() }; LANES];
         springs[..rest.len()].copy_from_slice(rest);
-        solve_gathered::<S, DAMPED>(simd, beads, &springs, constants);
+        solve_gathered::<S, L, DAMPED>(simd, beads, &springs, laws);
     }
 }
 
 #[inline(always)]
-fn solve_gathered<S: Simd, const DAMPED: bool>(
+fn solve_gathered<S: Simd, L: LooseLaws, const DAMPED: bool>(
     simd: S,
     beads: &mut Beads,
     springs: &[Spring; LANES],
-    constants: Scaled,
+    laws: L,
 ) {
     let [s0, s1, s2, s3, s4, s5, s6, s7] = springs;
     let a = [s0.a, s1.a, s2.a, s3.a, s4.a, s5.a, s6.a, s7.a];
     let b = [s0.b, s1.b, s2.b, s3.b, s4.b, s5.b, s6.b, s7.b];
     let rest = [s0.rest, s1.rest, s2.rest, s3.rest, s4.rest, s5.rest, s6.rest, s7.rest];
     let (end_a, end_b) = (beads.end::<S, DAMPED>(simd, &a), beads.end::<S, DAMPED>(simd, &b));
-    let [at_a, at_b] = solve_abreast::<_, _, DAMPED>(simd, end_a, end_b, lane(simd, &rest), constants);
+    let law = laws.law(simd, springs);
+    let [at_a, at_b] = solve_abreast::<_, _, DAMPED>(simd, end_a, end_b, lane(simd, &rest), law);
     beads.put(&a, at_a, end_a.inverse_mass);
     beads.put(&b, at_b, end_b.inverse_mass);
 }
@@ -276,9 +198,9 @@ pub fn strain(position: &[Vec3A], spring: &Spring) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::{Elasticity, Particles, order::Order};
+    use crate::solver::{Particles, SpringConstants, order::Order};
 
-    fn pair(distance: f32) -> (Lanes, Topology) {
+    fn pair(distance: f32) -> Lanes {
         let mut lanes = Lanes::default();
         let particles = Particles {
             position: vec![Vec3A::ZERO, Vec3A::X * distance],
@@ -288,35 +210,28 @@ mod tests {
         };
         lanes.load(&particles, Order::plain(2), Instructions::Best);
         lanes.previous = lanes.position.clone();
-        let topology = Topology {
-            springs: vec![Spring { a: 0, b: 1, rest: 1.0, ..Spring::default() }],
-            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1, woven: false, carries: false }],
-            areas: vec![1.0; 2],
-            ..Default::default()
-        };
-        (lanes, topology)
+        lanes
     }
 
-    fn solve_once(lanes: &mut Lanes, topology: &Topology, stiffness: f32, damping: f32) {
-        let mut springs = [SpringConstants::default(); 3];
-        springs[0] = SpringConstants { stiffness, damping };
-        let material = Material::bare(1.0, Elasticity::Springs(springs));
-        solve(
-            lanes,
-            topology,
-            topology.batches.iter(),
-            &material,
-            0.1,
-            &mut Beads::default(),
-            None,
-            Instructions::Best,
+    fn solve_once(lanes: &mut Lanes, stiffness: f32, damping: f32) {
+        let springs = [Spring { a: 0, b: 1, rest: 1.0, ..Spring::default() }];
+        let constants = BatchLaw::Alike(Scaled::new(SpringConstants { stiffness, damping }, 0.1));
+        let few = &mut lanes.clone();
+        solve_few(few, &springs, constants, Instructions::Best);
+        let mut beads = Beads::default();
+        beads.read(lanes, damping > 0.0, Instructions::Best);
+        solve(&mut beads, &springs, constants, Instructions::Best);
+        beads.write(lanes, Instructions::Best);
+        assert_eq!(
+            few.position.get(1).to_array().map(f32::to_bits),
+            lanes.position.get(1).to_array().map(f32::to_bits)
         );
     }
 
     #[test]
     fn a_spring_moves_by_the_implicit_euler_answer() {
-        let (mut lanes, topology) = pair(1.5);
-        solve_once(&mut lanes, &topology, 100.0, 3.0);
+        let mut lanes = pair(1.5);
+        solve_once(&mut lanes, 100.0, 3.0);
         // Implicit Euler for m = 0.5 kg: m Δx = h² (-k (s + Δx) - c Δx / h), with the stretch s = 0.5 m.
         let expected = -100.0 * 0.01 * 0.5 / (0.5 + 100.0 * 0.01 + 3.0 * 0.1);
         assert!((lanes.position.get(1).x - 1.5 - expected).abs() < 1e-6);
@@ -325,9 +240,9 @@ mod tests {
 
     #[test]
     fn springs_without_stiffness_or_length_stay_finite() {
-        let (mut lanes, topology) = pair(0.0);
-        solve_once(&mut lanes, &topology, 0.0, 0.0);
-        solve_once(&mut lanes, &topology, 1e9, 1e9);
+        let mut lanes = pair(0.0);
+        solve_once(&mut lanes, 0.0, 0.0);
+        solve_once(&mut lanes, 1e9, 1e9);
         assert!(lanes.position.get(1).is_finite());
     }
 }

@@ -14,7 +14,7 @@ use super::{
     strand::{Pack, Rows, Springs},
 };
 use crate::solver::{
-    Anchor, Elasticity, Grain, Lattice, Material, SpringKind,
+    Anchor, Elasticity, Lattice, Material, SpringKind,
     lanes::Block,
     lattice::Threads,
     order::{Band, Order},
@@ -93,7 +93,7 @@ impl Yarn {
                 Self::Alike { stretch: scaled(SpringKind::Structural), bend }
             }
             Elasticity::Moduli(moduli) => Self::Sheet {
-                stretch: [Grain::Warp, Grain::Weft].map(|grain| Grading::new(moduli, grain, h)),
+                stretch: Grading::both(moduli, h),
                 rigidity: Some(Scaled::new(moduli.rigidity(), h)).filter(Scaled::acts),
             },
         }

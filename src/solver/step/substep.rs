@@ -10,7 +10,8 @@ use crate::solver::{
         grab,
         law::Scaled,
         level::LevelRun,
-        spring, tether,
+        loose::Loose,
+        tether,
         weave::{self, Last, Weaver, Yarn},
     },
     explicit,
@@ -129,10 +130,9 @@ impl Substep<'_> {
         self.solve_tethers(scratch);
         let Scratch { lanes, beads, bench: Bench { loom, seam, .. }, curls, instructions, .. } = scratch;
         let (material, h) = (&self.ctx.material, self.h);
-        let loose = self.topology.batches.iter().filter(|batch| !batch.woven);
         let braids = &self.topology.braids;
         let strung = (!braids.is_empty()).then_some(Strung { braids, yarn, loom: &mut *loom });
-        spring::solve(lanes, self.topology, loose, material, h, beads, strung, *instructions);
+        self.loose(false, strung).solve(lanes, beads, *instructions);
         if let Some(lattice) = &self.topology.lattice {
             let mut run = lanes.whole();
             let mut sheet = run.sheet();
@@ -144,9 +144,12 @@ impl Substep<'_> {
 
     /// All springs, colour after colour.
     pub fn solve_springs(&self, scratch: &mut Scratch) {
-        let batches = self.topology.batches.iter();
         let Scratch { lanes, beads, instructions, .. } = scratch;
-        spring::solve(lanes, self.topology, batches, &self.ctx.material, self.h, beads, None, *instructions);
+        self.loose(true, None).solve(lanes, beads, *instructions);
+    }
+
+    fn loose<'a>(&'a self, woven: bool, strung: Option<Strung<'a>>) -> Loose<'a> {
+        Loose { topology: self.topology, material: &self.ctx.material, h: self.h, woven, strung }
     }
 
     /// Tethers to hands, then those to pins.
