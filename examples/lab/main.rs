@@ -10,7 +10,10 @@
 
 use std::{io, path::PathBuf, process::ExitCode, str::FromStr};
 
-use bevy_drape::solver::{Effort, LevelPass, Topology};
+use bevy_drape::{
+    prelude::Fabric,
+    solver::{Effort, LevelPass, Topology},
+};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde_json::Value;
 
@@ -137,6 +140,12 @@ struct Options {
     /// Stiffness of springs along the threads, of those along diagonals, and of those that bend, N/m; 0 leaves them out
     #[arg(long, value_names = ["STRUCTURAL", "SHEAR", "BEND"], num_args = 3, default_values_t = [5000.0, 500.0, 20.0])]
     stiffness: Vec<f32>,
+    /// A preset in place of those springs and of 0.2 kg/m², as cotton_woven: its density, moduli and rigidity
+    #[arg(long, value_parser = fabric)]
+    fabric: Option<Fabric>,
+    /// Bending rigidity of that fabric, N·m
+    #[arg(long, requires = "fabric")]
+    rigidity: Option<f32>,
     /// Damping of the velocity, 1/s
     #[arg(long, default_value_t = 1.0)]
     damping: f32,
@@ -149,6 +158,12 @@ struct Options {
     /// Writes the positions of this moment instead of the last
     #[arg(long, requires = "positions", value_name = "SECONDS")]
     at_seconds: Option<f32>,
+}
+
+fn fabric(name: &str) -> Result<Fabric, String> {
+    let known = Fabric::PRESETS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+    let preset = Fabric::PRESETS.into_iter().find(|(preset, _)| *preset == name);
+    preset.map(|(_, fabric)| fabric).ok_or(format!("fabrics are {known}"))
 }
 
 /// Which coarse levels are used.

@@ -9,6 +9,7 @@ use bevy::{
 };
 use bevy_drape::{
     build,
+    prelude::{ClothError, Fabric},
     solver::{
         Anchor, ColliderShape, Effort, Elasticity, Material, Method, Obstacle, Particles, SpringConstants, SpringKind,
         StepContext, Tethers, Topology,
@@ -113,6 +114,17 @@ pub fn drape(options: &Options, mesh: &MeshSource) -> io::Result<Scene> {
     Ok(scene)
 }
 
+/// The sheet or the springs that are asked for, without thickness and air.
+fn material(options: &Options) -> Result<Material, ClothError> {
+    if let Some(fabric) = &options.fabric {
+        let bending_rigidity = options.rigidity.unwrap_or(fabric.bending_rigidity);
+        let Material { density, elasticity, .. } = Fabric { bending_rigidity, ..fabric.clone() }.material()?;
+        return Ok(Material::bare(density, elasticity));
+    }
+    let spring = |kind: SpringKind| SpringConstants { stiffness: options.stiffness[kind.index()], damping: 0.0 };
+    Ok(Material::bare(DENSITY, Elasticity::Springs(SpringKind::ALL.map(spring))))
+}
+
 /// The cloth at rest but for a smooth ripple of 1 mm, and what it hangs by.
 fn free_cloth(options: &Options, mesh: &MeshSource) -> io::Result<(Scene, Top)> {
     let unusable = |cause: String| io::Error::other(format!("{mesh} can't be used: {cause}"));
@@ -123,16 +135,11 @@ fn free_cloth(options: &Options, mesh: &MeshSource) -> io::Result<(Scene, Top)> 
     let begun = Instant::now();
     let topology = build::topology_of(&sheet.mesh, Mat3A::IDENTITY).map_err(|error| unusable(error.to_string()))?;
     let build_ms = begun.elapsed().as_secs_f64() * 1e3;
-    let spring = |kind: SpringKind| SpringConstants { stiffness: options.stiffness[kind.index()], damping: 0.0 };
-    let material = Material {
-        damping: options.damping,
-        friction: 0.5,
-        ..Material::bare(DENSITY, Elasticity::Springs(SpringKind::ALL.map(spring)))
-    };
+    let material = Material { damping: options.damping, friction: 0.5, ..material(options).map_err(io::Error::other)? };
     let mut particles = Particles::at_rest(rippled(&topology, &sheet.top), &topology, &material);
     if let MeshSource::Grid = mesh {
         // The standard cloth has the same mass at its border as inside.
-        particles.inverse_mass.fill((options.n * options.n) as f32 / DENSITY);
+        particles.inverse_mass.fill((options.n * options.n) as f32 / material.density);
     }
     let (anchors, tethers, obstacles) = (Vec::new(), None, Vec::new());
     let effort = options.effort(&topology);

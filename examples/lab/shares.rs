@@ -13,7 +13,10 @@ const ROUNDS: usize = 5;
 const PARTS: [(&str, fn(&mut Options)); 5] = [
     ("levels", |options| options.levels = Levels::Set(Vec::new())),
     ("tethers", |options| options.tethers = Switch::Off),
-    ("bending", |options| options.stiffness[2] = 0.0),
+    ("bending", |options| {
+        options.stiffness[2] = 0.0;
+        options.rigidity = Some(0.0);
+    }),
     ("shear", |options| options.stiffness[1] = 0.0),
     ("threads", |options| options.stiffness[0] = 0.0),
 ];

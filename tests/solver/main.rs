@@ -2,6 +2,7 @@
 
 mod air;
 mod bench_bed;
+mod bending;
 mod boundaries;
 mod contact;
 mod convergence;
