@@ -3,13 +3,13 @@
 pub(super) mod anchor;
 pub(super) mod beads;
 pub(super) mod braid;
-pub(super) mod curl;
 pub(super) mod curvature;
 pub(super) mod diagonal;
 pub mod grab;
 pub(super) mod law;
 pub(super) mod level;
 pub(super) mod loose;
+pub(super) mod plate;
 pub mod spring;
 pub(super) mod strand;
 pub mod tether;

@@ -4,7 +4,7 @@ use bevy::math::Vec3A;
 
 use super::{
     Instructions, Lanes,
-    constraint::{beads::Beads, curl::Curls, level::Levels, tether::PinPlaces},
+    constraint::{beads::Beads, level::Levels, plate::Plate, tether::PinPlaces},
     force::wind::Air,
     lanes::Points,
     share::Bench,
@@ -31,8 +31,8 @@ pub struct Scratch {
     pub(super) beads: Beads,
     /// The coarse levels.
     pub(super) levels: Levels,
-    /// What a lattice's bends are at rest.
-    pub(super) curls: Curls,
+    /// What a lattice's bends have in common.
+    pub(super) plate: Plate,
     /// The pins that hold tethers.
     pub(super) pins: PinPlaces,
     /// What this thread needs of its own.

@@ -12,10 +12,10 @@
 //! (κ D W Dᵀ + 1) lambda = -κ (D x - r)
 //!
 //! Two bends of a thread have particles in common if they are no more than two nodes apart, so the matrix has five
-//! diagonals, and Cholesky's L D Lᵀ solves it in one pass there and one back. Sweeping over the bends instead leaves a
+//! diagonals, and Cholesky's L D Lᵀ solves it in one pass there and one back; L and D are the same in all substeps. Sweeping over the bends instead leaves a
 //! cloth too soft whose nodes move by more than they are apart: the more, the finer the mesh.
 
-use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, prelude::*};
 
 use super::{
     law::Scaled,
@@ -23,7 +23,7 @@ use super::{
 };
 use crate::solver::{
     lanes::Block,
-    simd::{Lane, Vec3Wide, Wide},
+    simd::{Lane, Vec3x8, lane},
 };
 
 /// The bends of threads side by side.
@@ -33,34 +33,54 @@ pub(in crate::solver) struct Bends<'a> {
     pub weights: &'a [[Lane; 2]],
     /// What D is at rest, m; empty where the cloth is flat.
     pub rest: &'a [Block],
+    /// The matrix.
+    pub factors: &'a [Factor],
     /// B h² and its damping, kg m².
     pub rigidity: Scaled,
 }
 
-/// One node and its weights, the third being the sum of the others.
-#[derive(Clone, Copy)]
-struct Node<F> {
-    p: F,
-    q: F,
-    sum: F,
-}
+/// One row of L and D: the entries of L one and two places below the diagonal, and -κ/D. None of them changes from substep
+/// to substep.
+pub(in crate::solver) type Factor = [Lane; 3];
 
-impl<F> Node<F> {
-    #[inline(always)]
-    fn load<S: Simd>(simd: S, weights: &[[Lane; 2]], j: usize, stride: usize) -> Self
-    where
-        F: Wide<S>,
-    {
-        let lanes = weights.as_flattened();
-        let (p, q) = (F::load(simd, lanes, 2 * j, 2 * stride), F::load(simd, lanes, 2 * j + 1, 2 * stride));
-        Self { p, q, sum: p + q }
+/// Takes the matrix of the bends of threads apart. They have `count` nodes with inverse masses, 1/kg.
+#[inline(always)]
+pub(in crate::solver) fn factorize<S: Simd>(
+    simd: S,
+    count: usize,
+    inverse_mass: &[Lane],
+    weights: &[[Lane; 2]],
+    rigidity: Scaled,
+    factors: &mut [Factor],
+) {
+    let total = rigidity.k + rigidity.c;
+    let (none, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+    // Of the two nodes before.
+    let (mut q_2, mut sum_1, mut q_1) = (none, none, none);
+    let (mut inverse_2, mut inverse_1, mut lower_1) = (none, none, none);
+    for j in 1..count - 1 {
+        let w_before = lane(simd, &inverse_mass[j - 1]);
+        let w_here = lane(simd, &inverse_mass[j]);
+        let w_after = lane(simd, &inverse_mass[j + 1]);
+        let [p, q] = [lane(simd, &weights[j][0]), lane(simd, &weights[j][1])];
+        let sum = p + q;
+        let diagonal = (p * p * w_before + sum * sum * w_here + q * q * w_after) * total + one;
+        let next_but_one = (w_before * q_2 * p) * total;
+        let next = (w_before * sum_1 * p + w_here * q_1 * sum) * -total - next_but_one * lower_1;
+        let (lower_2, lower) = (next_but_one * inverse_2, next * inverse_1);
+        // Never below one but by rounding.
+        let pivot = diagonal - lower_2 * next_but_one - lower * next;
+        let inverse = one / pivot.max(one);
+        factors[j] = [lower.into(), lower_2.into(), (inverse * -rigidity.k).into()];
+        (q_2, sum_1, q_1) = (q_1, sum, q);
+        (inverse_2, inverse_1, lower_1) = (inverse_1, inverse, lower);
     }
 }
 
 impl Pack<'_> {
-    /// Solves the bends of all inner nodes of threads with `count` nodes.
+    /// Solves the bends of all inner nodes of one pack of threads with `count` nodes.
     #[inline(always)]
-    pub fn solve_curvature<S: Simd, F: Wide<S>, const DAMPED: bool, const CURVED: bool>(
+    pub fn solve_curvature<S: Simd, const DAMPED: bool, const CURVED: bool>(
         &mut self,
         simd: S,
         count: usize,
@@ -68,104 +88,79 @@ impl Pack<'_> {
         rows: &mut Rows,
     ) {
         if count > 2 {
-            self.eliminate_bends::<S, F, DAMPED, CURVED>(simd, count, bends, rows);
-            self.substitute_bends::<S, F>(simd, count, bends, rows);
+            self.eliminate_bends::<S, DAMPED, CURVED>(simd, count, bends, rows);
+            self.substitute_bends(simd, count, bends, rows);
         }
     }
 
     #[inline(always)]
-    fn eliminate_bends<S: Simd, F: Wide<S>, const DAMPED: bool, const CURVED: bool>(
+    fn eliminate_bends<S: Simd, const DAMPED: bool, const CURVED: bool>(
         &self,
         simd: S,
         count: usize,
-        Bends { weights, rest, rigidity }: Bends,
+        Bends { weights, rest, factors, rigidity }: Bends,
         rows: &mut Rows,
     ) {
-        let stride = self.stride;
-        let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
-        let nothing = Vec3Wide::splat(simd, [0.0; 3]);
-        let total = rigidity.k + rigidity.c;
-        let place = |j: usize| Vec3Wide::load_at(simd, self.position, j, stride);
-        let mass = |j: usize| F::load(simd, self.inverse_mass, j, stride);
-        let (mut before, mut here) = (place(0), place(1));
-        let (mut w_before, mut w_here) = (mass(0), mass(1));
-        // Of the two nodes before.
-        let (mut node_2, mut node_1) = (Node { p: none, q: none, sum: none }, Node { p: none, q: none, sum: none });
-        let (mut inverse_2, mut inverse_1, mut lower_1) = (none, none, none);
+        let damping = f32x8::splat(simd, rigidity.c / rigidity.k);
+        let mut here = self.end::<S, f32x8<S>, DAMPED>(simd, 1);
+        let first = self.end::<S, f32x8<S>, DAMPED>(simd, 0);
+        // From the node before, now and before the substep.
+        let (mut way, mut old_way) = (here.position - first.position, here.previous - first.previous);
+        let nothing = Vec3x8::splat(simd, [0.0; 3]);
+        // Of the two nodes before: the right side over -κ.
         let (mut right_2, mut right_1) = (nothing, nothing);
         for j in 1..count - 1 {
-            let (after, w_after) = (place(j + 1), mass(j + 1));
-            let node = Node::<F>::load(simd, weights, j, stride);
-            let Node { p, q, sum } = node;
-            let mut bend = before * p - here * sum + after * q;
+            let after = self.end::<S, f32x8<S>, DAMPED>(simd, j + 1);
+            let (next_way, next_old_way) = (after.position - here.position, after.previous - here.previous);
+            let [p, q] = [lane(simd, &weights[j][0]), lane(simd, &weights[j][1])];
+            let bend = next_way * q - way * p;
+            let mut right = bend;
             if CURVED {
-                bend = bend - Vec3Wide::load_at(simd, rest, j, stride);
+                right = right - Vec3x8::load(simd, &rest[j]);
             }
-            let mut right = bend * F::splat(simd, -rigidity.k);
             if DAMPED {
-                let was = |j: usize| Vec3Wide::load_at(simd, self.previous, j, stride);
-                let way = (before - was(j - 1)) * p - (here - was(j)) * sum + (after - was(j + 1)) * q;
-                right = right - way * F::splat(simd, rigidity.c);
+                right = right + (bend - (next_old_way * q - old_way * p)) * damping;
             }
-            let diagonal = (p * p * w_before + sum * sum * w_here + q * q * w_after) * total + one;
-            let next_but_one = (w_before * node_2.q * p) * total;
-            let next = (w_before * node_1.sum * p + w_here * node_1.q * sum) * -total - next_but_one * lower_1;
-            let (lower_2, lower) = (next_but_one * inverse_2, next * inverse_1);
-            // Never below one but by rounding.
-            let pivot = (diagonal - lower_2 * next_but_one - lower * next).max(one);
-            let inverse = one / pivot;
+            let lower = lane(simd, &factors[j][0]);
+            let lower_2 = lane(simd, &factors[j][1]);
             right = right - right_1 * lower - right_2 * lower_2;
-            lower.store(&mut rows.right, j, stride);
-            lower_2.store(&mut rows.upper, j, stride);
-            (right * inverse).store_at(&mut rows.bends, j, stride);
-            (before, here, w_before, w_here) = (here, after, w_here, w_after);
-            (node_2, node_1) = (node_1, node);
-            (inverse_2, inverse_1, lower_1) = (inverse_1, inverse, lower);
+            right.store(&mut rows.bends[j]);
+            (here, way, old_way) = (after, next_way, next_old_way);
             (right_2, right_1) = (right_1, right);
         }
     }
 
     /// From the last bend back to the first. Each node moves when the bends around it are known.
     #[inline(always)]
-    fn substitute_bends<S: Simd, F: Wide<S>>(
-        &mut self,
-        simd: S,
-        count: usize,
-        Bends { weights, .. }: Bends,
-        rows: &Rows,
-    ) {
-        let stride = self.stride;
-        let none = F::splat(simd, 0.0);
-        let nothing = Vec3Wide::splat(simd, [0.0; 3]);
-        let nobody = Node { p: none, q: none, sum: none };
-        // Of the two nodes after: lambda and weights, and the entries below the diagonal that still count.
+    fn substitute_bends<S: Simd>(&mut self, simd: S, count: usize, Bends { weights, factors, .. }: Bends, rows: &Rows) {
+        let none = f32x8::splat(simd, 0.0);
+        let nothing = Vec3x8::splat(simd, [0.0; 3]);
+        // Of the two nodes after: lambda, and the entries below the diagonal that still count.
         let (mut lambda_1, mut lambda_2) = (nothing, nothing);
-        let (mut node_1, mut node_2) = (nobody, nobody);
         let (mut lower_1, mut lower_2, mut lower_2_of_1) = (none, none, none);
-        for j in (0..count - 1).rev() {
-            let (mut node, mut lambda) = (nobody, nothing);
-            let (mut lower, mut lower_2_of_this) = (none, none);
-            // The first node has no bend.
-            if j > 0 {
-                node = Node::load(simd, weights, j, stride);
-                let right = Vec3Wide::load_at(simd, &rows.bends, j, stride);
-                lambda = right - lambda_1 * lower_1 - lambda_2 * lower_2;
-                lower = F::load(simd, &rows.right, j, stride);
-                lower_2_of_this = F::load(simd, &rows.upper, j, stride);
-            }
-            self.shift(simd, j + 1, lambda * node.q - lambda_1 * node_1.sum + lambda_2 * node_2.p);
+        // What the bend of the node after does to the way there, and what all do to the way from there on.
+        let (mut pull_back, mut pull_after) = (nothing, nothing);
+        for j in (1..count - 1).rev() {
+            let [p, q] = [lane(simd, &weights[j][0]), lane(simd, &weights[j][1])];
+            let inverse = lane(simd, &factors[j][2]);
+            let right = Vec3x8::load(simd, &rows.bends[j]);
+            let lambda = right * inverse - lambda_1 * lower_1 - lambda_2 * lower_2;
+            let pull = lambda * q - pull_back;
+            self.shift(simd, j + 1, pull - pull_after);
+            (pull_back, pull_after) = (lambda * p, pull);
             (lambda_2, lambda_1) = (lambda_1, lambda);
-            (node_2, node_1) = (node_1, node);
-            (lower_2, lower_2_of_1, lower_1) = (lower_2_of_1, lower_2_of_this, lower);
+            (lower_2, lower_2_of_1) = (lower_2_of_1, lane(simd, &factors[j][1]));
+            lower_1 = lane(simd, &factors[j][0]);
         }
-        self.shift(simd, 0, lambda_2 * node_2.p);
+        self.shift(simd, 1, nothing - pull_back - pull_after);
+        self.shift(simd, 0, pull_back);
     }
 
     /// Moves nodes by an impulse over h, kg m.
     #[inline(always)]
-    fn shift<S: Simd, F: Wide<S>>(&mut self, simd: S, j: usize, by: Vec3Wide<F>) {
-        let w = F::load(simd, self.inverse_mass, j, self.stride);
-        let place = Vec3Wide::load_at(simd, self.position, j, self.stride) + by * w;
-        place.store_at(self.position, j, self.stride);
+    fn shift<S: Simd>(&mut self, simd: S, j: usize, by: Vec3x8<S>) {
+        let w = lane(simd, &self.inverse_mass[j]);
+        let place = Vec3x8::load(simd, &self.position[j]) + by * w;
+        place.store(&mut self.position[j]);
     }
 }

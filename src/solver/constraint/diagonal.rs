@@ -16,8 +16,8 @@
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    curl::Curls,
     law::Scaled,
+    plate::Plate,
     spring::{End, solve_abreast},
     weave::Sheet,
 };
@@ -38,20 +38,20 @@ pub(in crate::solver) struct CellYarn<'a> {
     /// B h² and its damping. None where nothing resists being twisted.
     pub rigidity: Option<Scaled>,
     /// What twists are at rest.
-    pub curls: &'a Curls,
+    pub plate: &'a Plate,
 }
 
 impl<'a> CellYarn<'a> {
-    pub fn new(material: &Material, h: f32, curls: &'a Curls) -> Self {
+    pub fn new(material: &Material, h: f32, plate: &'a Plate) -> Self {
         match &material.elasticity {
             Elasticity::Springs(constants) => {
                 let spring = Scaled::new(constants[SpringKind::Shear.index()], h);
-                Self { spring, is_sheet: false, rigidity: None, curls }
+                Self { spring, is_sheet: false, rigidity: None, plate }
             }
             Elasticity::Moduli(moduli) => {
                 let shear = SpringConstants { stiffness: moduli.shear, damping: moduli.shear * moduli.stretch_damping };
                 let rigidity = Some(Scaled::new(moduli.rigidity(), h)).filter(Scaled::acts);
-                Self { spring: Scaled::new(shear, h), is_sheet: true, rigidity, curls }
+                Self { spring: Scaled::new(shear, h), is_sheet: true, rigidity, plate }
             }
         }
     }
@@ -188,6 +188,12 @@ impl RowPairs<'_> {
         End { position, previous, inverse_mass: lane(simd, &sheet.inverse_mass[at]) }
     }
 
+    /// The block at a place, and the one below.
+    #[inline(always)]
+    fn ends<S: Simd, const DAMPED: bool>(&self, simd: S, sheet: &Sheet, at: usize) -> [End<f32x8<S>>; 2] {
+        [self.end::<S, DAMPED>(simd, sheet, at), self.end::<S, DAMPED>(simd, sheet, at + 1)]
+    }
+
     /// Solves the diagonals below `some` rows.
     #[inline(always)]
     fn solve_diagonals<S: Simd, const SHEET: bool, const DAMPED: bool>(
@@ -253,33 +259,31 @@ impl RowPairs<'_> {
         rigidity: Scaled,
     ) {
         let count = sheet.position.len();
-        let one = f32x8::splat(simd, 1.0);
-        let nothing = Vec3x8::splat(simd, [0.0; 3]);
+        let (nothing, one) = (Vec3x8::splat(simd, [0.0; 3]), f32x8::splat(simd, 1.0));
         // Each corner is in two of the cells that are solved at once: they share its mass.
         let total = 2.0 * (rigidity.k + rigidity.c);
         for row in some {
-            let ends =
-                |sheet: &Sheet, at: usize| [row, row + 1].map(|row| self.end::<S, DAMPED>(simd, sheet, at + row));
-            let mut curls = self.of_row(self.yarn.curls.of_cells(0), row);
-            let mut here = ends(sheet, 0);
+            let mut rest = self.of_row(&self.yarn.plate.rest.cells, row);
+            let mut here = self.ends::<S, DAMPED>(simd, sheet, row);
             let mut pull_before = nothing;
             for (at, weight) in (0..count).step_by(self.rows).zip(self.of_row(&self.lattice.twist, row)) {
                 let weight = lane(simd, weight);
-                let next = ends(sheet, (at + self.rows).min(count - self.rows));
+                let next = self.ends::<S, DAMPED>(simd, sheet, (at + self.rows).min(count - self.rows) + row);
                 // From a corner to the one below, and how that changes from column to column.
                 let down = here[0].position - here[1].position;
                 let twist = (down - down.ahead(next[0].position - next[1].position)) * weight;
-                let curl = curls.next().map_or(nothing, |curl| Vec3x8::load(simd, curl));
-                let mut right = (twist - curl) * f32x8::splat(simd, -rigidity.k);
+                let mut right = twist;
+                if let Some(rest) = rest.next() {
+                    right = right - Vec3x8::load(simd, rest);
+                }
                 if DAMPED {
                     let was = here[0].previous - here[1].previous;
-                    let way = twist - (was - was.ahead(next[0].previous - next[1].previous)) * weight;
-                    right = right - way * f32x8::splat(simd, rigidity.c);
+                    let was = (was - was.ahead(next[0].previous - next[1].previous)) * weight;
+                    right = right + (twist - was) * f32x8::splat(simd, rigidity.c / rigidity.k);
                 }
                 let masses = here[0].inverse_mass + here[1].inverse_mass;
-                let next_masses = next[0].inverse_mass + next[1].inverse_mass;
-                let masses = masses + masses.slide::<1>(next_masses);
-                let pull = right * (weight / (masses * (weight * weight) * total + one));
+                let masses = masses + masses.slide::<1>(next[0].inverse_mass + next[1].inverse_mass);
+                let pull = right * (weight * -rigidity.k / (masses * (weight * weight) * total + one));
                 let by = pull - pull_before.behind(pull);
                 let [above, below] = here;
                 (above.position + by * above.inverse_mass).store(&mut sheet.position[at + row]);

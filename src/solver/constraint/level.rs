@@ -19,8 +19,8 @@ use bevy::math::Vec3A;
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    curl::Curls,
     law::{Pull, Scaled},
+    plate::Plate,
     tether::{self, PinPlaces, TetherBlock},
     weave::{self, Last, Loom, Sheet, Weaver, Yarn},
 };
@@ -197,7 +197,7 @@ impl Nodes {
             Sheet { position, previous: &self.way.0, inverse_mass: &self.inverse_mass, row_masses: &self.row_masses };
         let spring = Scaled { c: 0.0, ..run.stretch };
         let yarn = Yarn::Pulling(Pull { spring, give: 1.0 + (run.slack - TAUTER).max(0.0) });
-        let weaver = Weaver { lattice: &level.lattice, yarn, curls: &Curls::FLAT, instructions: run.instructions };
+        let weaver = Weaver { lattice: &level.lattice, yarn, plate: &Plate::NONE, instructions: run.instructions };
         weaver.solve(&mut sheet, run.last, loom);
     }
 

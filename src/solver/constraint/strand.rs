@@ -57,12 +57,12 @@ pub(in crate::solver) struct Pack<'a> {
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Rows {
     /// The right side, over the pivot.
-    pub(super) right: Vec<Lane>,
+    right: Vec<Lane>,
     /// The entry of the row before in the column of this one, over the pivot.
-    pub(super) upper: Vec<Lane>,
+    upper: Vec<Lane>,
     /// The entry in the column of the spring that closes a ring, over the pivot.
     border: Vec<Lane>,
-    /// Of bends: the right side over the pivot. The factors below the diagonal stand in `right` and `upper` then.
+    /// Of bends: the right side.
     pub(super) bends: Vec<Block>,
 }
 
@@ -94,7 +94,7 @@ struct Row<F> {
 
 impl Pack<'_> {
     #[inline(always)]
-    fn end<S: Simd, F: Wide<S>, const DAMPED: bool>(&self, simd: S, j: usize) -> End<F> {
+    pub(super) fn end<S: Simd, F: Wide<S>, const DAMPED: bool>(&self, simd: S, j: usize) -> End<F> {
         let position = Vec3Wide::load_at(simd, self.position, j, self.stride);
         let previous = if DAMPED { Vec3Wide::load_at(simd, self.previous, j, self.stride) } else { position };
         End { position, previous, inverse_mass: F::load(simd, self.inverse_mass, j, self.stride) }

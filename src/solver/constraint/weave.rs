@@ -8,13 +8,13 @@ use core::ops::Range;
 use fearless_simd::{dispatch, f32x8, f32x16, prelude::*};
 
 use super::{
-    curl::Curls,
-    curvature::Bends,
+    curvature::{self, Bends, Factor},
     law::{Grading, Laws, Pull, Scaled, SheetThreads},
+    plate::{Plate, from_pack},
     strand::{Pack, Rows, Springs},
 };
 use crate::solver::{
-    Anchor, Elasticity, Lattice, Material, SpringKind,
+    Anchor, Elasticity, Lanes, Lattice, Material, SpringKind,
     lanes::Block,
     lattice::Threads,
     order::{Band, Order},
@@ -164,7 +164,7 @@ impl Last {
 pub(in crate::solver) struct Weaver<'a> {
     pub lattice: &'a Lattice,
     pub yarn: Yarn,
-    pub curls: &'a Curls,
+    pub plate: &'a Plate,
     pub instructions: Instructions,
 }
 
@@ -184,7 +184,7 @@ impl Weaver<'_> {
     }
 
     fn solve_columns(&self, sheet: &mut Sheet, loom: &mut Loom) {
-        let (order, threads) = (self.lattice.order(), &self.lattice.along_columns);
+        let order = self.lattice.order();
         if order.bands().len() > 1 {
             for first in (0..order.pack_count()).step_by(2) {
                 for band in order.bands() {
@@ -206,7 +206,7 @@ impl Weaver<'_> {
             (0..).step_by(2).zip(pairs.zip(inverse_mass.chunks(2 * stride)))
         {
             let mut pack = Pack { position, previous, inverse_mass, stride };
-            self.solve_packs(&mut pack, threads, first, self.curls.of_columns(first, stride), &mut loom.rows);
+            self.solve_packs(&mut pack, self.columns(first), &mut loom.rows);
         }
     }
 
@@ -228,7 +228,7 @@ impl Weaver<'_> {
         let count = self.packs(first).len() * stride;
         let Loom { rows, position, previous, inverse_mass } = loom;
         let mut pack = Pack { position: &mut position[..count], previous, inverse_mass, stride };
-        self.solve_packs(&mut pack, &self.lattice.along_columns, first, self.curls.of_columns(first, stride), rows);
+        self.solve_packs(&mut pack, self.columns(first), rows);
     }
 
     /// Puts a band's part of columns back to where it was taken from.
@@ -260,21 +260,69 @@ impl Weaver<'_> {
             let (number, count) = ((band.first + first) / LANES, some.len().div_ceil(LANES) * nodes);
             let inverse_mass = &row_masses[first / LANES * nodes..][..count];
             let mut pack = Pack { position: &mut taken[..count], previous, inverse_mass, stride: nodes };
-            self.solve_packs(&mut pack, threads, number, self.curls.of_rows(number, nodes), rows);
+            self.solve_packs(&mut pack, self.rows(number), rows);
             dispatch!(level, simd => put_rows(simd, taken, nodes, position, band.rows, some));
         }
     }
 
-    /// Solves one or two packs of threads, from that with a `number` on.
-    fn solve_packs(&self, pack: &mut Pack, threads: &Threads, number: usize, rest: &[Block], rows: &mut Rows) {
+    /// The columns of some packs from the `first` on.
+    fn columns(&self, first: usize) -> ThreadRun<'_> {
+        let (threads, plate) = (&self.lattice.along_columns, self.plate);
+        let nodes = threads.nodes;
+        let (factors, rest) = (from_pack(&plate.columns, first, nodes), from_pack(&plate.rest.columns, first, nodes));
+        ThreadRun { threads, first: first * nodes, factors, rest, yarn: self.yarn }
+    }
+
+    /// The rows of some packs from the `first` on.
+    fn rows(&self, first: usize) -> ThreadRun<'_> {
+        let (threads, plate) = (&self.lattice.along_rows, self.plate);
+        let nodes = threads.nodes;
+        let (factors, rest) = (from_pack(&plate.rows, first, nodes), from_pack(&plate.rest.rows, first, nodes));
+        ThreadRun { threads, first: first * nodes, factors, rest, yarn: self.yarn }
+    }
+
+    /// Solves one or two packs of threads.
+    fn solve_packs(&self, pack: &mut Pack, run: ThreadRun, rows: &mut Rows) {
         let level = self.instructions.level();
-        let run = ThreadRun { threads, number, rest, yarn: self.yarn };
         match (pack.position.len() > pack.stride, self.yarn.is_damped()) {
             (true, false) => dispatch!(level, simd => run.solve::<_, f32x16<_>, false>(simd, pack, rows)),
             (true, true) => dispatch!(level, simd => run.solve::<_, f32x16<_>, true>(simd, pack, rows)),
             (false, false) => dispatch!(level, simd => run.solve::<_, f32x8<_>, false>(simd, pack, rows)),
             (false, true) => dispatch!(level, simd => run.solve::<_, f32x8<_>, true>(simd, pack, rows)),
         }
+    }
+}
+
+/// Works out what the bends of a lattice have in common in all substeps. Only the threads of a sheet have any.
+pub(in crate::solver) fn prepare_bends(
+    lattice: &Lattice,
+    yarn: Yarn,
+    lanes: &mut Lanes,
+    loom: &mut Loom,
+    plate: &mut Plate,
+    instructions: Instructions,
+) {
+    let Yarn::Sheet { rigidity: Some(rigidity), .. } = yarn else { return };
+    let (order, level) = (lattice.order(), instructions.level());
+    let Threads { nodes, count, curvature: weights, .. } = &lattice.along_columns;
+    plate.columns.resize(weights.len(), Factor::default());
+    loom.make_room(*nodes);
+    for (first, factors) in plate.columns.chunks_exact_mut(*nodes).enumerate() {
+        for band in order.bands() {
+            take(lanes.band(band).inverse_mass, band, *nodes, first..first + 1, &mut loom.inverse_mass);
+        }
+        let (masses, weights) = (&loom.inverse_mass, &weights[first * nodes..]);
+        dispatch!(level, simd => {
+            curvature::factorize(simd, *count, masses, weights, rigidity, factors)
+        });
+    }
+    let Threads { nodes, count, curvature: weights, .. } = &lattice.along_rows;
+    plate.rows.resize(weights.len(), Factor::default());
+    let masses = lanes.row_masses.chunks_exact(*nodes).zip(weights.chunks_exact(*nodes));
+    for ((masses, weights), factors) in masses.zip(plate.rows.chunks_exact_mut(*nodes)) {
+        dispatch!(level, simd => {
+            curvature::factorize(simd, *count, masses, weights, rigidity, factors)
+        });
     }
 }
 
@@ -315,8 +363,10 @@ fn put_rows<S: Simd>(simd: S, taken: &[Block], nodes: usize, columns: &mut [Bloc
 #[derive(Clone, Copy)]
 struct ThreadRun<'a> {
     threads: &'a Threads,
-    /// Number of the first pack.
-    number: usize,
+    /// Where the first pack begins among all nodes.
+    first: usize,
+    /// The matrix of these packs' bends.
+    factors: &'a [Factor],
     /// What the bends of these packs are at rest, m; empty where the cloth is flat.
     rest: &'a [Block],
     yarn: Yarn,
@@ -325,7 +375,7 @@ struct ThreadRun<'a> {
 impl ThreadRun<'_> {
     #[inline(always)]
     fn solve<S: Simd, F: Wide<S>, const DAMPED: bool>(&self, simd: S, pack: &mut Pack, rows: &mut Rows) {
-        let (threads, first) = (self.threads, self.number * self.threads.nodes);
+        let Self { threads, first, .. } = *self;
         let count = threads.count;
         // What comes last is held best: stretch shows more than bending.
         match self.yarn {
@@ -340,16 +390,36 @@ impl ThreadRun<'_> {
             Yarn::Pulling(pull) => self.stretch::<S, F, _, false>(simd, pack, pull, rows),
             Yarn::Sheet { stretch, rigidity } => {
                 if let Some(rigidity) = rigidity {
-                    let bends = Bends { weights: &threads.curvature[first..], rest: self.rest, rigidity };
-                    if bends.rest.is_empty() {
-                        pack.solve_curvature::<S, F, DAMPED, false>(simd, count, bends, rows);
-                    } else {
-                        pack.solve_curvature::<S, F, DAMPED, true>(simd, count, bends, rows);
-                    }
+                    self.bend::<S, DAMPED>(simd, pack, rigidity, rows);
                 }
                 let grading = stretch[threads.grain.index()];
                 let laws = SheetThreads { shares: &threads.shares[first..], grading };
                 self.stretch::<S, F, _, DAMPED>(simd, pack, laws, rows);
+            }
+        }
+    }
+
+    /// One pack after the other: two at once don't fit into the fastest cache.
+    #[inline(always)]
+    fn bend<S: Simd, const DAMPED: bool>(&self, simd: S, pack: &mut Pack, rigidity: Scaled, rows: &mut Rows) {
+        let (count, stride) = (self.threads.count, pack.stride);
+        for first in (0..pack.position.len()).step_by(stride) {
+            let bends = Bends {
+                weights: &self.threads.curvature[self.first + first..],
+                rest: from_pack(self.rest, first, 1),
+                factors: &self.factors[first..],
+                rigidity,
+            };
+            let mut pack = Pack {
+                position: &mut pack.position[first..][..stride],
+                previous: if DAMPED { &pack.previous[first..] } else { &[] },
+                inverse_mass: &pack.inverse_mass[first..],
+                stride,
+            };
+            if bends.rest.is_empty() {
+                pack.solve_curvature::<S, DAMPED, false>(simd, count, bends, rows);
+            } else {
+                pack.solve_curvature::<S, DAMPED, true>(simd, count, bends, rows);
             }
         }
     }
@@ -362,7 +432,7 @@ impl ThreadRun<'_> {
         laws: L,
         rows: &mut Rows,
     ) {
-        let springs = Springs { rest: &self.threads.stretch[self.number * self.threads.nodes..], laws };
+        let springs = Springs { rest: &self.threads.stretch[self.first..], laws };
         if self.threads.closed {
             pack.solve::<S, F, L, DAMPED, true>(simd, self.threads.count, springs, rows);
         } else {

@@ -51,6 +51,11 @@ impl Substep<'_> {
                 weave::masses_along_rows(inverse_mass, band, row_masses, scratch.instructions);
             }
         }
+        if let Some(lattice) = self.topology.lattice.as_ref().filter(|_| self.ctx.method == Method::Strands) {
+            let Scratch { lanes, plate, bench, instructions, .. } = &mut *scratch;
+            let yarn = Yarn::new(&self.ctx.material, self.h);
+            weave::prepare_bends(lattice, yarn, lanes, &mut bench.loom, plate, *instructions);
+        }
         if let Some(run) = self.levels(scratch) {
             scratch.levels.fit(&run, &scratch.lanes);
         }
@@ -106,11 +111,11 @@ impl Substep<'_> {
         }
         let yarn = Yarn::new(&self.ctx.material, self.h);
         if let Some((pool, lattice)) = self.helpers {
-            let Scratch { lanes, pins, levels, curls, benches, applied_force, instructions, .. } = scratch;
+            let Scratch { lanes, pins, levels, plate, benches, applied_force, instructions, .. } = scratch;
             let finish = (!self.is_near).then(|| self.finish(applied_force, goes_on));
             let work = Work {
-                weaver: Weaver { lattice, yarn, curls, instructions: *instructions },
-                cells: CellYarn::new(&self.ctx.material, self.h, curls),
+                weaver: Weaver { lattice, yarn, plate, instructions: *instructions },
+                cells: CellYarn::new(&self.ctx.material, self.h, plate),
                 last: self.last,
                 levels: run.as_ref().map(|run| (run, &*levels)),
                 tethers: self.ctx.tethers.map_or(&[], Tethers::of_cloth),
@@ -128,7 +133,7 @@ impl Substep<'_> {
             }
         }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, bench: Bench { loom, seam, .. }, curls, instructions, .. } = scratch;
+        let Scratch { lanes, beads, bench: Bench { loom, seam, .. }, plate, instructions, .. } = scratch;
         let (material, h) = (&self.ctx.material, self.h);
         let braids = &self.topology.braids;
         let strung = (!braids.is_empty()).then_some(Strung { braids, yarn, loom: &mut *loom });
@@ -136,8 +141,8 @@ impl Substep<'_> {
         if let Some(lattice) = &self.topology.lattice {
             let mut run = lanes.whole();
             let mut sheet = run.sheet();
-            diagonal::solve(&mut sheet, lattice, CellYarn::new(material, h, curls), seam, *instructions);
-            Weaver { lattice, yarn, curls, instructions: *instructions }.solve(&mut sheet, self.last, loom);
+            diagonal::solve(&mut sheet, lattice, CellYarn::new(material, h, plate), seam, *instructions);
+            Weaver { lattice, yarn, plate, instructions: *instructions }.solve(&mut sheet, self.last, loom);
         }
         false
     }
