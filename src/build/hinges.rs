@@ -40,7 +40,7 @@ struct Hinge {
     warp: Vec2,
 }
 
-/// A bend for each edge between two of `triangles`. `areas` are those of the particles and `triangle_areas` those of the
+/// A bend for each edge between two triangles, none of them woven. `areas` are those of the particles and `triangle_areas` those of the
 /// triangles, m², and `warp` is the direction of the warp in each triangle.
 pub(super) fn find(
     rest: &[Vec3],
@@ -48,7 +48,7 @@ pub(super) fn find(
     areas: &[f32],
     triangle_areas: &[f32],
     warp: &[Vec3],
-) -> Vec<Bend> {
+) -> Vec<(Bend, bool)> {
     let inner = edges.iter().filter_map(|sides| match sides {
         [one, other] => hinge(rest, [one, other], triangle_areas, warp),
         _ => None,
@@ -58,7 +58,7 @@ pub(super) fn find(
     let scale = calibrate(&hinges, triangle_areas).sqrt().recip();
     let scaled = |Hinge { bend: Bend { particles, weights, rest }, .. }| {
         let rest = if Vec3::from(rest).length() < FLAT { [0.0; 3] } else { rest.map(|r| r * scale) };
-        Bend { particles, weights: weights.map(|weight| weight * scale), rest }
+        (Bend { particles, weights: weights.map(|weight| weight * scale), rest }, false)
     };
     hinges.into_iter().map(scaled).collect()
 }
@@ -92,12 +92,7 @@ fn hinge(rest: &[Vec3], sides: [&HalfEdge; 2], triangle_areas: &[f32], warp: &[V
         bend: Bend { particles, weights, rest: [0.0, sum.dot(side), sum.dot(along.cross(side))] },
         triangles,
         area,
-        unfolded: [
-            Vec2::ZERO,
-            Vec2::new(length, 0.0),
-            Vec2::new(feet[0], -heights[0]),
-            Vec2::new(feet[1], heights[1]),
-        ],
+        unfolded: [Vec2::ZERO, Vec2::new(length, 0.0), Vec2::new(feet[0], -heights[0]), Vec2::new(feet[1], heights[1])],
         warp: warp.try_normalize().unwrap_or(Vec2::X),
     })
 }

@@ -12,7 +12,7 @@ const MARGIN: f32 = 1.1;
 /// times rigidity over areal density, the square of the fastest frequency. By the power method.
 pub(super) fn of_bends(bends: &[Bend], areas: &[f32]) -> f32 {
     // A start with something of every way to move in it: neighbours go apart.
-    let mut way: Vec<f32> = (0..areas.len() as u32).map(|i| start(i)).collect();
+    let mut way: Vec<f32> = (0..areas.len() as u32).map(start).collect();
     let mut pull = vec![0.0; areas.len()];
     let mut rate = 0.0_f32;
     for _ in 0..ROUNDS {
