@@ -7,11 +7,13 @@ use super::{
     cells::{self, Cells},
     chart, coloring,
     edges::Edges,
+    faces,
     grouped::Grouped,
+    hinges,
     lattice::{self, Rectangle},
     levels,
     plate::Plate,
-    shares, springs, threads,
+    rate, shares, springs, threads,
 };
 use crate::{
     error::ClothError,
@@ -79,13 +81,15 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
             .map(|chart| levels::of_chart(&rest, &triangles, &chart))
             .unwrap_or_default(),
     };
-    let (bends, bend_batches) = match (&lattice, &rectangle) {
-        (Some(_), Some(rectangle)) => bends::of_plate(&Plate::new(&rest, rectangle), rest.len()),
-        _ => (Vec::new(), Vec::new()),
-    };
     let (springs, batches) = coloring::batches(rest.len(), &all, &woven);
     let triangle_areas: Vec<f32> = triangles.iter().map(|triangle| triangle_area(&rest, triangle)).collect();
     let areas = particle_areas(rest.len(), &triangles, &triangle_areas);
+    let (faces, face_batches) = faces::find(&rest, &triangles, &cells, &warp);
+    let (bends, bend_batches) = match (&lattice, &rectangle) {
+        (Some(_), Some(rectangle)) => bends::of_plate(&Plate::new(&rest, rectangle), rest.len()),
+        _ => bends::batches(rest.len(), &hinges::find(&rest, &edges, &areas, &triangle_areas, &warp)),
+    };
+    let bend_rate = rate::of_bends(&bends, &areas);
     Topology {
         rest,
         springs,
@@ -97,9 +101,12 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
         lattice,
         braids,
         levels,
+        faces,
+        face_batches,
+        is_curved: bends.iter().any(|bend| bend.rest != [0.0; 3]),
+        bend_rate,
         bends,
         bend_batches,
-        ..Topology::default()
     }
 }
 

@@ -2,9 +2,11 @@
 
 pub(super) mod anchor;
 pub(super) mod beads;
+pub(super) mod bend;
 pub(super) mod braid;
 pub(super) mod curvature;
 pub(super) mod diagonal;
+pub(super) mod face;
 pub mod grab;
 pub(super) mod law;
 pub(super) mod level;

@@ -4,7 +4,10 @@
 
 use bevy::math::Vec3A;
 
-use super::{Lanes, Material, Particles, Spring, SpringConstants, StepContext, Topology};
+use super::{
+    Lanes, Material, Moduli, Particles, Spring, SpringConstants, StepContext, Topology,
+    constraint::{bend::Bent, face::Deformed},
+};
 
 /// What ω² h² + 2 γ h may come to. Symplectic Euler is stable below 4: a tenth of it is left for cloth that
 /// is bent out of its rest shape.
@@ -27,6 +30,9 @@ pub(super) fn stable_substeps(
     sums: &mut Vec<(f32, f32)>,
 ) -> (u32, f32) {
     sum_spring_constants(topology, &ctx.material, sums);
+    if let Some(moduli) = ctx.material.moduli() {
+        sum_sheet_constants(topology, moduli, sums);
+    }
     let (mut omega_squared, mut gamma) = (0.0_f32, 0.0_f32);
     for (particle, &(k, c)) in (0..).zip(&*sums) {
         let w = lanes.inverse_mass(lanes.order.slot(particle));
@@ -62,6 +68,34 @@ fn sum_spring_constants(topology: &Topology, material: &Material, sums: &mut Vec
     }
 }
 
+/// Adds stiffness and damping of faces and bends to the sums, half of what Gershgorin's circle around a particle takes of
+/// them: a spring has its stiffness twice in it.
+fn sum_sheet_constants(topology: &Topology, moduli: &Moduli, sums: &mut [(f32, f32)]) {
+    let mut add = |particle: u32, stiffness: f32, delay: f32| {
+        let (k, c) = &mut sums[particle as usize];
+        *k += 0.5 * stiffness;
+        *c += 0.5 * stiffness * delay;
+    };
+    let [along_u, along_v] =
+        [0, 1].map(|i| moduli.stretch[i] + (moduli.stretch[i] - moduli.shear) * moduli.stiffening[i] * STRETCHED);
+    for face in &topology.faces {
+        let whole = |[b, c]: [f32; 2]| [(b + c).abs(), b.abs(), c.abs()];
+        let (u, v) = (whole(face.warp), whole(face.weft));
+        let (all_u, all_v) = (u.iter().sum::<f32>(), v.iter().sum::<f32>());
+        for ((&particle, u), v) in face.particles.iter().zip(u).zip(v) {
+            let threads = along_u * u * all_u + along_v * v * all_v;
+            let across = u * all_v + v * all_u + (u + v) * (all_u + all_v) * (1.0 + STRETCHED) * (1.0 + STRETCHED);
+            add(particle, face.area * (threads + moduli.shear * across), moduli.stretch_damping);
+        }
+    }
+    for bend in &topology.bends {
+        let all: f32 = bend.weights.iter().map(|weight| weight.abs()).sum();
+        for (&particle, weight) in bend.particles.iter().zip(bend.weights) {
+            add(particle, moduli.bending * weight.abs() * all, moduli.bend_damping);
+        }
+    }
+}
+
 /// Adds the springs' forces: F = k (L0 - |p - q|) n - c ((vp - vq)·n) n with n = (p - q) / |p - q|.
 pub(super) fn add_spring_forces(
     particles: &Particles,
@@ -84,6 +118,32 @@ pub(super) fn add_spring_forces(
             let pull = n * (k * (rest - length) - c * approach);
             force[p] += pull;
             force[q] -= pull;
+        }
+    }
+}
+
+/// Adds the forces of faces and bends, as they are the negative gradient of their energies.
+pub(super) fn add_sheet_forces(
+    particles: &Particles,
+    topology: &Topology,
+    moduli: &Moduli,
+    stiffness_scale: f32,
+    force: &mut [Vec3A],
+) {
+    let at = |particle: u32| particles.position[particle as usize];
+    let rate = |particle: u32| particles.velocity[particle as usize];
+    for face in &topology.faces {
+        let rates = Deformed::new(face, face.particles.map(rate));
+        let [on_b, on_c] = Deformed::new(face, face.particles.map(at)).forces(face, moduli, &rates);
+        for (&particle, pull) in face.particles.iter().zip([-(on_b + on_c), on_b, on_c]) {
+            force[particle as usize] += pull * stiffness_scale;
+        }
+    }
+    for bend in &topology.bends {
+        let rates = Bent::new(bend, bend.particles.map(rate));
+        let forces = Bent::new(bend, bend.particles.map(at)).forces(bend, moduli, &rates);
+        for (&particle, pull) in bend.particles.iter().zip(forces) {
+            force[particle as usize] += pull * stiffness_scale;
         }
     }
 }

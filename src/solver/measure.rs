@@ -2,7 +2,10 @@
 
 use bevy::math::Vec3A;
 
-use super::{Material, Particles, SpringKind, Topology, constraint::spring};
+use super::{
+    Material, Particles, SpringKind, Topology,
+    constraint::{bend::Bent, face::Deformed, spring},
+};
 
 /// Stretch along the threads: change of length over rest length of the structural springs, no unit. Negative where
 /// they are pressed together.
@@ -59,6 +62,15 @@ pub fn energy(particles: &Particles, topology: &Topology, material: &Material, g
         for spring in topology.springs_of(kind) {
             let strain = spring::strain(&particles.position, spring);
             energy.elastic += material.spring(kind, spring).energy(spring.rest, strain);
+        }
+    }
+    if let Some(moduli) = material.moduli() {
+        let at = |particle: u32| particles.position[particle as usize];
+        for face in &topology.faces {
+            energy.elastic += face.area * Deformed::new(face, face.particles.map(at)).energy(moduli);
+        }
+        for bend in &topology.bends {
+            energy.elastic += moduli.bending * Bent::new(bend, bend.particles.map(at)).energy(bend);
         }
     }
     energy

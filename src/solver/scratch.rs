@@ -4,7 +4,13 @@ use bevy::math::Vec3A;
 
 use super::{
     Instructions, Lanes,
-    constraint::{beads::Beads, level::Levels, plate::Plate, tether::PinPlaces},
+    constraint::{
+        beads::Beads,
+        bend::{Bending, Ways},
+        level::Levels,
+        plate::Plate,
+        tether::PinPlaces,
+    },
     force::wind::Air,
     lanes::Points,
     share::Bench,
@@ -29,6 +35,10 @@ pub struct Scratch {
     pub(super) spring_sums: Vec<(f32, f32)>,
     /// The particles one by one.
     pub(super) beads: Beads,
+    /// Their ways while they bend.
+    pub(super) ways: Ways,
+    /// How they bend in this step.
+    pub(super) bending: Option<Bending>,
     /// The coarse levels.
     pub(super) levels: Levels,
     /// What a lattice's bends have in common.

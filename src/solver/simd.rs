@@ -152,6 +152,18 @@ impl<F> Vec3Wide<F> {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self
+    where
+        F: Sub<Output = F> + Mul<Output = F> + Copy,
+    {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
     /// `self` where `mask` is set, else `other`.
     #[inline(always)]
     pub fn or<S: Simd>(self, mask: F::Mask, other: Self) -> Self

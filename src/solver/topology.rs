@@ -105,9 +105,9 @@ pub struct Face {
 pub struct Bend {
     /// The particles. One without a weight only shows where the surface is.
     pub particles: [u32; 4],
-    /// The weights, no unit. Their sum is zero.
+    /// The weights, 1/m. Their sum is zero.
     pub weights: [f32; 4],
-    /// The sum at rest, m: along from particle 0 to particle 1, across from 2 to 3 as far as that isn't along, and normal
+    /// The sum at rest, no unit: along from particle 0 to particle 1, across from 2 to 3 as far as that isn't along, and normal
     /// to both. Zero where the cloth is flat.
     pub rest: [f32; 3],
 }
@@ -154,6 +154,8 @@ pub struct Topology {
     pub bend_batches: Vec<BendBatch>,
     /// Whether any bend has a rest other than zero: the cloth isn't flat.
     pub is_curved: bool,
+    /// No less than the square of the fastest frequency of bending if areal density and rigidity were 1, 1/m⁴.
+    pub bend_rate: f32,
     /// Particles of each triangle; the order gives the side of its normal.
     pub triangles: Vec<[u32; 3]>,
     /// Area of each triangle, m².

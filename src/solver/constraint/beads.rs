@@ -13,9 +13,9 @@ use crate::solver::{
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Beads {
     /// Position, m, and inverse mass, 1/kg.
-    now: Vec<[f32; 4]>,
+    pub now: Vec<[f32; 4]>,
     /// Position before the substep, m; only where something is damped.
-    before: Vec<[f32; 4]>,
+    pub before: Vec<[f32; 4]>,
 }
 
 impl Beads {
@@ -95,8 +95,9 @@ impl Beads {
     }
 }
 
+/// What eight particles have in a list.
 #[inline(always)]
-fn gather<S: Simd>(simd: S, beads: &[[f32; 4]], [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [f32x8<S>; 4] {
+pub(super) fn gather<S: Simd>(simd: S, beads: &[[f32; 4]], [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [f32x8<S>; 4] {
     apart(
         simd,
         [

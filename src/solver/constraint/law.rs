@@ -79,6 +79,15 @@ impl Grading {
         [Grain::Warp, Grain::Weft].map(|grain| Self::new(moduli, grain, h))
     }
 
+    /// Tension over strain of a sheet along this direction, times h², at strains side by side, kg.
+    #[inline(always)]
+    pub fn secant<S: Simd, F: Wide<S>>(&self, simd: S, strain: F) -> F {
+        let threads = (self.stretch - self.shear).max(0.0);
+        let taut = strain * (self.half_stiffening * threads) + (threads + self.shear);
+        let pressed = F::splat(simd, self.compression * threads + self.shear);
+        strain.simd_gt(F::splat(simd, 0.0)).select(taut, pressed)
+    }
+
     /// The same without what only threads do: stiffen, and give way where they are pressed together.
     pub fn linear(self) -> Self {
         Self { half_stiffening: 0.0, compression: 1.0, ..self }

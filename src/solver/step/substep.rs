@@ -5,6 +5,7 @@ use bevy::{math::Vec3A, tasks::TaskPool};
 use crate::solver::{
     Lattice, LevelPass, Method, Particles, Scratch, StepContext, Tethers, Topology,
     constraint::{
+        bend::Bending,
         braid::Strung,
         diagonal::{self, CellYarn},
         grab,
@@ -44,6 +45,10 @@ pub(super) struct Substep<'a> {
 impl Substep<'_> {
     /// Works out what doesn't change from substep to substep.
     pub fn prepare(&self, scratch: &mut Scratch) {
+        let is_solved = self.ctx.method != Method::Explicit;
+        let woven = self.ctx.method == Method::Xpbd;
+        let bending = || Bending::new(self.topology, woven, &self.ctx.material, &scratch.lanes, self.h);
+        scratch.bending = is_solved.then(bending).flatten();
         // Threads that share the work have done it already.
         if self.ctx.method == Method::Strands && self.topology.lattice.is_some() && self.helpers.is_none() {
             for band in scratch.lanes.order.bands() {
@@ -82,6 +87,9 @@ impl Substep<'_> {
         force.clone_from(steady_force);
         lanes.store(particles, *instructions);
         explicit::add_spring_forces(particles, self.topology, &self.ctx.material, self.stiffness_scale, force);
+        if let Some(moduli) = self.ctx.material.moduli() {
+            explicit::add_sheet_forces(particles, self.topology, moduli, self.stiffness_scale, force);
+        }
         applied_force.load(lanes.order, force, *instructions);
     }
 
@@ -133,11 +141,11 @@ impl Substep<'_> {
             }
         }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, bench: Bench { loom, seam, .. }, plate, instructions, .. } = scratch;
+        let Scratch { lanes, beads, ways, bending, bench: Bench { loom, seam, .. }, plate, instructions, .. } = scratch;
         let (material, h) = (&self.ctx.material, self.h);
         let braids = &self.topology.braids;
         let strung = (!braids.is_empty()).then_some(Strung { braids, yarn, loom: &mut *loom });
-        self.loose(false, strung).solve(lanes, beads, *instructions);
+        self.loose(false, *bending, strung).solve(lanes, beads, ways, *instructions);
         if let Some(lattice) = &self.topology.lattice {
             let mut run = lanes.whole();
             let mut sheet = run.sheet();
@@ -149,12 +157,12 @@ impl Substep<'_> {
 
     /// All springs, colour after colour.
     pub fn solve_springs(&self, scratch: &mut Scratch) {
-        let Scratch { lanes, beads, instructions, .. } = scratch;
-        self.loose(true, None).solve(lanes, beads, *instructions);
+        let Scratch { lanes, beads, ways, bending, instructions, .. } = scratch;
+        self.loose(true, *bending, None).solve(lanes, beads, ways, *instructions);
     }
 
-    fn loose<'a>(&'a self, woven: bool, strung: Option<Strung<'a>>) -> Loose<'a> {
-        Loose { topology: self.topology, material: &self.ctx.material, h: self.h, woven, strung }
+    fn loose<'a>(&'a self, woven: bool, bending: Option<Bending>, strung: Option<Strung<'a>>) -> Loose<'a> {
+        Loose { topology: self.topology, material: &self.ctx.material, h: self.h, woven, bending, strung }
     }
 
     /// Tethers to hands, then those to pins.
