@@ -15,6 +15,7 @@ use crate::{
     solver::{Elasticity, Material, Moduli},
 };
 
+pub use presets::FabricPreset;
 pub use springs::ClothSprings;
 
 /// The physical constants of a cloth, as a textile laboratory measures them. Change them at any time: they act in the next

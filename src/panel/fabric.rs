@@ -113,11 +113,12 @@ fn show_presets(ui: &mut Ui, fabric: &Fabric, follows_asset: bool) -> Option<Fab
         "Preset",
         "Fabrics to begin with. A cloth that follows its asset does so until one is chosen or a value is edited.",
     );
-    const ENTRY: &str = "Takes all values of this fabric. They are plausible, not measured.";
     let presets = Fabric::PRESETS;
-    let current = presets.iter().position(|(_, preset)| preset == fabric).filter(|_| !follows_asset);
+    let current = presets.iter().position(|preset| preset.fabric == *fabric).filter(|_| !follows_asset);
     let otherwise = if follows_asset { "follows its asset" } else { "own values" };
-    let entries: Vec<_> = presets.iter().enumerate().map(|(i, &(name, _))| (i, name, ENTRY)).collect();
+    let abouts = presets.each_ref().map(|preset| format!("Takes all values of this fabric. {}", preset.about()));
+    let entries = presets.iter().zip(&abouts).enumerate();
+    let entries: Vec<_> = entries.map(|(i, (preset, about))| (i, preset.name, about.as_str())).collect();
     let chosen = choice(ui, PRESET, false, current, otherwise, &entries)?;
-    presets.into_iter().nth(chosen).map(|(_, preset)| preset)
+    presets.into_iter().nth(chosen).map(|preset| preset.fabric)
 }

@@ -30,6 +30,7 @@ mod pin_selectors;
 mod pin_targets;
 #[cfg(feature = "picking")]
 mod pointers;
+mod presets;
 mod recovery;
 mod reflection;
 mod removal;
