@@ -25,7 +25,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
         commands.spawn((
             studio.cloth(ClothGrid::new(1.4, 0.9, 42, 27), color),
             Cloth { substeps: Some(12), ..default() },
-            Fabric { density: 0.12, bend_stiffness: 3.0, lift: 0.8, ..default() },
+            Fabric { lift: 0.8, ..Fabric::POLYESTER_TABLECLOTH },
             // Pinned to the pole, the flag follows wherever that goes.
             Pins::edge(ClothEdge::Left).to_entity(pole),
             Transform::from_translation(foot + Vec3::new(0.73, 1.9, 0.0)),

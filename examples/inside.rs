@@ -29,15 +29,15 @@ fn main() -> AppExit {
 fn setup(mut commands: Commands, mut studio: common::Studio) {
     common::spawn_camera(&mut commands, Vec3::new(0.4, 1.35, 2.9), Vec3::new(0.0, 0.95, 0.0));
     let linen = Color::srgb(0.55, 0.53, 0.50);
-    let grid = ClothGrid::new(1.0, 1.0, 20, 20);
+    let grid = ClothGrid::new(1.0, 1.0, 24, 24);
     let hanging = Pins::edge_corners(ClothEdge::Top);
 
     let springs = ClothDebugView { full_strain: 0.05, ..ClothDebugView::springs() };
     commands.spawn((
-        studio.cloth(grid, linen),
-        // Soft enough to see the strain, and nothing that holds it back.
+        // Soft enough to see the strain, and nothing that holds it back. It is limper than the others.
+        studio.cloth(ClothGrid::new(1.0, 1.0, 32, 32), linen),
         Cloth { tether_slack: None, ..default() },
-        Fabric { structural_stiffness: 100.0, shear_stiffness: 20.0, ..default() },
+        Fabric::COTTON_JERSEY,
         hanging.clone(),
         springs,
         Transform::from_xyz(-1.15, 1.1, 0.0),
@@ -45,15 +45,15 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
     commands.spawn((
         studio.cloth(grid, linen),
         Cloth::default(),
-        Fabric::SILK,
+        Fabric::POLYESTER_TABLECLOTH,
         hanging,
         ClothDebugView { tethers: true, bounds: true, ..default() },
         Transform::from_xyz(0.0, 1.1, 0.0),
     ));
     commands.spawn((
         studio.cloth(grid.lying(), linen),
-        Cloth::default(),
-        Fabric { thickness: 0.01, ..default() },
+        Cloth { collision_margin: 0.01, ..default() },
+        Fabric::default(),
         ClothDebugView { normals: true, ..default() },
         Transform::from_xyz(1.15, 1.1, 0.0),
     ));

@@ -29,7 +29,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
         Name::new("Flag"),
         studio.cloth(ClothGrid::new(1.0, 0.66, 30, 20), Color::srgb(0.62, 0.16, 0.14)),
         Cloth::default(),
-        Fabric { density: 0.12, bend_stiffness: 4.0, ..default() },
+        Fabric::POLYESTER_TABLECLOTH,
         Pins::edge(ClothEdge::Left).to_entity(pole),
         Transform::from_translation(foot + Vec3::new(0.52, 1.65, 0.0)),
     ));
@@ -41,9 +41,9 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
     ));
     commands.spawn((
         Name::new("Cloth on the ball"),
-        studio.cloth(ClothGrid::new(1.0, 1.0, 40, 40).lying(), Color::srgb(0.16, 0.38, 0.62)),
-        Cloth { substeps: Some(12), ..default() },
-        Fabric { thickness: 0.008, ..Fabric::SILK },
+        studio.cloth(ClothGrid::new(1.0, 1.0, 42, 42).lying(), Color::srgb(0.16, 0.38, 0.62)),
+        Cloth { substeps: Some(12), collision_margin: 0.008, ..default() },
+        Fabric::SILK,
         Transform::from_xyz(0.5, 0.8, 0.6),
     ));
     commands.spawn((Name::new("Ground"), ClothCollider::from(InfinitePlane3d::default())));

@@ -45,7 +45,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
         let mut cloth = commands.spawn((
             studio.cloth(grid, color),
             Cloth::default(),
-            Fabric { bend_stiffness: 5.0, ..default() },
+            Fabric::COTTON_WOVEN,
             pins,
             Transform::from_translation(place(i)),
         ));

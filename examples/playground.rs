@@ -91,7 +91,7 @@ fn spawn_curtain(commands: &mut Commands, studio: &mut common::Studio) {
     commands.spawn((
         studio.cloth(grid, Color::srgb(0.72, 0.16, 0.14)),
         Cloth { substeps: Some(24), ..default() },
-        Fabric { density: 0.15, bend_stiffness: 5.0, ..default() },
+        Fabric::COTTON_WOVEN,
         left.and(right),
         Transform::from_translation(middle - Vec3::Y * 0.93),
         Name::new("Curtain"),
@@ -123,8 +123,8 @@ fn spawn_draped<S>(
     ));
     commands.spawn((
         studio.cloth(ClothGrid::new(1.25, 1.25, 48, 48).lying(), color),
-        Cloth { substeps: Some(12), ..default() },
-        Fabric { bend_stiffness: 10.0, thickness: 0.008, friction: 0.6, ..default() },
+        Cloth { substeps: Some(12), collision_margin: 0.008, ..default() },
+        Fabric::COTTON_WOVEN,
         Transform::from_translation(place + Vec3::Y * 0.75).with_rotation(Quat::from_rotation_y(0.5)),
         Name::new(name),
     ));
@@ -152,7 +152,7 @@ fn make_cloth_of_model(
     for entity in children.iter_descendants(ready.entity).filter(|&entity| meshes.contains(entity)) {
         commands.entity(entity).insert((
             Cloth { substeps: Some(12), ..default() },
-            Fabric { density: 0.12, bend_stiffness: 4.0, ..default() },
+            Fabric::POLYESTER_TABLECLOTH,
             Pins::attribute(ATTRIBUTE_PIN),
         ));
     }

@@ -35,8 +35,8 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
     ));
     commands.spawn((
         studio.cloth(ClothGrid::new(2.0, 2.0, 64, 64).lying(), Color::srgb(0.90, 0.88, 0.82)),
-        Cloth { substeps: Some(16), ..default() },
-        Fabric { density: 0.25, bend_stiffness: 10.0, thickness: 0.012, friction: 0.7, ..default() },
+        Cloth { substeps: Some(16), collision_margin: 0.012, ..default() },
+        Fabric::POLYESTER_TABLECLOTH,
         Transform::from_xyz(0.0, 1.1, 0.0),
     ));
 }

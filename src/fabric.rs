@@ -2,6 +2,7 @@
 
 mod begun;
 pub(crate) mod file;
+pub(crate) mod fineness;
 pub(crate) mod handle;
 pub(crate) mod loader;
 mod presets;
@@ -15,6 +16,7 @@ use crate::{
     solver::{Elasticity, Material, Moduli},
 };
 
+pub use presets::FabricPreset;
 pub use springs::ClothSprings;
 
 /// The physical constants of a cloth, as a textile laboratory measures them. Change them at any time: they act in the next
@@ -22,7 +24,8 @@ pub use springs::ClothSprings;
 ///
 /// Forces are over the width that they act on: a strip of 5 cm with a stiffness of 1000 N/m takes 50 N to be twice as
 /// long, and 0.5 N for one per cent. The same fabric is the same cloth whatever its mesh, as far as the mesh is fine
-/// enough for its folds: its edges should be no longer than [`finest_fold`](Self::finest_fold).
+/// enough for its folds: its edges should be no longer than [`max_edge_length`](Self::max_edge_length), and one warning
+/// says so where they are.
 ///
 /// The warp runs along the V axis of a mesh's first UVs, the weft along U; [`ATTRIBUTE_WARP`](crate::prelude::ATTRIBUTE_WARP)
 /// says otherwise where a mesh has it, and without both the warp runs along the mesh's own Y. On meshes with rows and
@@ -85,13 +88,6 @@ impl Default for Fabric {
         Self::COTTON_WOVEN
     }
 }
-
-/// Edges of a mesh may be so many times (B / (density g))^(1/3) long and still show a fabric's folds: a fold that hangs
-/// under its weight is some six of them wide, and takes four edges.
-const FOLD: f32 = 1.5;
-
-/// Earth's gravity, m/s².
-const GRAVITY: f32 = 9.81;
 
 impl Fabric {
     /// The constants as the solver reads them, if all are in their range.
@@ -170,10 +166,5 @@ impl Fabric {
             lift: self.lift,
             ..Material::bare(self.density, elasticity)
         }
-    }
-
-    /// The longest that a mesh's edges may be if it is to show this fabric's folds, m.
-    pub fn finest_fold(&self) -> f32 {
-        FOLD * (self.bending_rigidity / (self.density * GRAVITY)).cbrt()
     }
 }

@@ -79,7 +79,7 @@ pub mod prelude {
         collider::ClothCollider,
         commands::ClothCommands,
         error::ClothError,
-        fabric::{ClothSprings, Fabric, file::FabricFileError, handle::FabricHandle},
+        fabric::{ClothSprings, Fabric, FabricPreset, file::FabricFileError, handle::FabricHandle},
         grab::{ClothGrabbed, ClothGrip, ClothPoint, ClothReleased, GrabId},
         grid::ClothGrid,
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},

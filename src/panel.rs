@@ -28,6 +28,7 @@ mod number;
 mod readings;
 mod settings;
 mod solver;
+mod springs;
 mod surroundings;
 mod watch;
 
@@ -187,6 +188,7 @@ fn show(ui: &mut Ui, model: &mut Model, memory: &Memory) {
     if !model.chosen.is_empty() {
         actions::show_buttons(ui, model);
         fabric::show(ui, model);
+        springs::show(ui, model);
         solver::show(ui, model);
     }
     surroundings::show_surroundings(ui, model);

@@ -96,6 +96,8 @@ pub(crate) struct Said {
     pub not_finite: bool,
     /// A setting is out of its range.
     pub refused: bool,
+    /// The mesh is too coarse for its fabric: by how many times its edges were too long when that was told, or 0.
+    pub coarseness: f32,
 }
 
 /// Buffers that a step fills anew.

@@ -21,7 +21,7 @@ use crate::{
         mesh::{ClothMesh, Drawn},
     },
     error::ClothError,
-    fabric::{ClothSprings, Fabric},
+    fabric::{ClothSprings, Fabric, fineness},
     origin,
     pins::{PinTarget, Pins, targets_by_particle},
     solver::{Material, Particles, Tethers},
@@ -73,6 +73,7 @@ impl CandidateItem<'_, '_> {
         let added = news.added.contains(&source);
         let touched = self.cloth.is_changed()
             || self.fabric.is_changed()
+            || self.springs.as_ref().is_some_and(DetectChanges::is_changed)
             || self.pins.is_changed()
             || self.transform.is_changed()
             || self.mesh.is_changed();
@@ -251,6 +252,7 @@ impl CandidateItem<'_, '_> {
         let grabs = core::mem::take(&mut self.state.grabs);
         *self.state = ClothState { grabs, ..built.state };
         *self.status = ClothStatus::Ready;
+        fineness::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &mut self.state);
         if self.mesh.0 != drawn {
             self.mesh.0 = drawn.clone();
         }

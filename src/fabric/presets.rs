@@ -1,11 +1,74 @@
 //! Fabrics to begin with: what laboratories measured where they did, and what is plausible beside it.
 //!
-//! - Wang, O'Brien, Ramamoorthi, "Data-driven elastic models for cloth", 2011: jersey (their interlock T-shirt), denim,
-//!   the polyester tablecloth. Their shear carries an uncertainty of a factor of two.
-//! - Penava et al., "Determination of the elastic constants of plain woven fabrics", 2014: density and thickness of cotton
-//!   and wool.
+//! - Wang, O'Brien, Ramamoorthi, "Data-driven elastic models for cloth", 2011. Their shear carries an uncertainty of a
+//!   factor of two.
+//! - Penava, Šimić Penava, Knezić, "Determination of the elastic constants of plain woven fabrics by a tensile test in
+//!   various directions", 2014.
 
 use super::Fabric;
+
+/// A fabric to begin with, and what of it has been measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FabricPreset {
+    /// Name of its file in the repository's `assets/fabrics`, without `.fabric.ron`.
+    pub name: &'static str,
+    /// Its constants.
+    pub fabric: Fabric,
+    /// Whose measurements they are, or what they were estimated from.
+    pub source: &'static str,
+    /// The fields of [`Fabric`] that were measured. All others are plausible.
+    pub measured: &'static [&'static str],
+}
+
+impl FabricPreset {
+    /// What of it was measured, and by whom, in a few sentences.
+    pub fn about(&self) -> String {
+        let fields: Vec<String> = self.measured.iter().map(|field| field.replace('_', " ")).collect();
+        let measured = match fields.split_last() {
+            None => "All of it is plausible, nothing measured".into(),
+            Some((only, [])) => format!("Measured: {only}; all else is plausible"),
+            Some((last, others)) => format!("Measured: {} and {last}; all else is plausible", others.join(", ")),
+        };
+        format!("{measured}. {}", self.source)
+    }
+}
+
+/// The sentence of the docs on what was measured.
+macro_rules! measured {
+    () => {
+        "All of it is plausible, nothing measured"
+    };
+    ($first:ident $(, $other:ident)*) => {
+        concat!("Measured: `", stringify!($first), "`" $(, ", `", stringify!($other), "`")*, "; all else is plausible")
+    };
+}
+
+/// Makes a constant of each preset and the list of them, so that docs, panel and files say the same of it.
+macro_rules! presets {
+    ($(
+        $(#[doc = $doc:literal])+
+        $constant:ident = $name:literal, measured: [$($field:ident),*], source: $source:literal, { $($values:tt)* }
+    )+) => {
+        impl Fabric {
+            $(
+                $(#[doc = $doc])+
+                #[doc = ""]
+                #[doc = concat!(measured!($($field),*), ". ", $source)]
+                pub const $constant: Self = Self { $($values)* ..Self::PLAIN };
+            )+
+
+            /// All presets.
+            pub const PRESETS: [FabricPreset; 8] = [$(
+                FabricPreset {
+                    name: $name,
+                    fabric: Self::$constant,
+                    source: $source,
+                    measured: &[$(stringify!($field)),*],
+                },
+            )+];
+        }
+    };
+}
 
 impl Fabric {
     /// What the presets have in common.
@@ -26,9 +89,16 @@ impl Fabric {
         drag: 1.2,
         lift: 0.4,
     };
+}
 
-    /// Cotton jersey, as in a T-shirt: it stretches, more across than along, and gets stiff where it does.
-    pub const COTTON_JERSEY: Self = Self {
+presets! {
+    /// Cotton jersey, as in a T-shirt: it stretches, more along than across, and gets stiff where it does.
+    COTTON_JERSEY = "cotton_jersey",
+    measured: [
+        density, warp_stiffness, weft_stiffness, warp_stiffening, weft_stiffening, shear_stiffness, bending_rigidity
+    ],
+    source: "Wang, O'Brien and Ramamoorthi 2011: interlock T-shirt, 60 % cotton.",
+    {
         density: 0.187,
         thickness: 0.0006,
         warp_stiffness: 33.0,
@@ -37,15 +107,19 @@ impl Fabric {
         weft_stiffening: 63.0,
         shear_stiffness: 37.0,
         bending_rigidity: 21e-6,
-        friction: 0.5,
-        ..Self::PLAIN
-    };
+    }
 
-    /// Plain woven cotton, as in a shirt or a sheet.
-    pub const COTTON_WOVEN: Self = Self::PLAIN;
+    /// Plain woven cotton, as in a shirt or a sheet. The default.
+    COTTON_WOVEN = "cotton_woven",
+    measured: [density, thickness],
+    source: "Penava et al. 2014: plain woven cotton. Stiffness and rigidity are of the order of other cottons.",
+    {}
 
     /// Denim of 11 oz with a little elastane, as in jeans: folds are few and wide.
-    pub const DENIM: Self = Self {
+    DENIM = "denim",
+    measured: [density, warp_stiffness, weft_stiffness, shear_stiffness, bending_rigidity],
+    source: "Wang, O'Brien and Ramamoorthi 2011: denim of 11 oz, 99 % cotton.",
+    {
         density: 0.324,
         thickness: 0.0008,
         warp_stiffness: 411.0,
@@ -53,11 +127,14 @@ impl Fabric {
         shear_stiffness: 53.0,
         bending_rigidity: 77e-6,
         friction: 0.6,
-        ..Self::PLAIN
-    };
+    }
 
     /// A tablecloth of polyester.
-    pub const POLYESTER_TABLECLOTH: Self = Self {
+    POLYESTER_TABLECLOTH = "polyester_tablecloth",
+    measured: [density, warp_stiffness, weft_stiffness, shear_stiffness, bending_rigidity],
+    source: "Wang, O'Brien and Ramamoorthi 2011: polyester tablecloth. It is as thick as the polyester of Penava et al. \
+             2014.",
+    {
         density: 0.128,
         thickness: 0.000_25,
         warp_stiffness: 4004.0,
@@ -65,11 +142,13 @@ impl Fabric {
         shear_stiffness: 19.0,
         bending_rigidity: 41e-6,
         friction: 0.4,
-        ..Self::PLAIN
-    };
+    }
 
     /// Light woven silk: limp and smooth.
-    pub const SILK: Self = Self {
+    SILK = "silk",
+    measured: [density],
+    source: "A silk of 21 momme, the trade's measure of its weight.",
+    {
         density: 0.09,
         thickness: 0.000_15,
         warp_stiffness: 2000.0,
@@ -77,11 +156,13 @@ impl Fabric {
         shear_stiffness: 20.0,
         bending_rigidity: 4e-6,
         friction: 0.25,
-        ..Self::PLAIN
-    };
+    }
 
     /// Wool flannel: soft, and it gives.
-    pub const WOOL_FLANNEL: Self = Self {
+    WOOL_FLANNEL = "wool_flannel",
+    measured: [density, thickness],
+    source: "Penava et al. 2014: plain woven wool.",
+    {
         density: 0.235,
         thickness: 0.000_57,
         warp_stiffness: 1000.0,
@@ -89,11 +170,13 @@ impl Fabric {
         shear_stiffness: 40.0,
         bending_rigidity: 12e-6,
         friction: 0.45,
-        ..Self::PLAIN
-    };
+    }
 
     /// Leather of 1 mm, as in a saddlebag: it hardly folds.
-    pub const LEATHER: Self = Self {
+    LEATHER = "leather",
+    measured: [],
+    source: "Its density is the one that Unreal Engine gives heavy leather.",
+    {
         density: 0.6,
         thickness: 0.001,
         warp_stiffness: 15_000.0,
@@ -101,11 +184,14 @@ impl Fabric {
         shear_stiffness: 4000.0,
         bending_rigidity: 1e-3,
         friction: 0.6,
-        ..Self::PLAIN
-    };
+    }
 
     /// A rubber sheet of 1 mm: heavy and stretchy, and it sticks.
-    pub const RUBBER: Self = Self {
+    RUBBER = "rubber",
+    measured: [],
+    source: "Estimated from a modulus of 1.5 MPa: times the thickness for the stiffness, a third of that for the shear, \
+             times the thickness cubed over nine for the rigidity.",
+    {
         density: 1.1,
         thickness: 0.001,
         warp_stiffness: 1500.0,
@@ -113,18 +199,5 @@ impl Fabric {
         shear_stiffness: 500.0,
         bending_rigidity: 170e-6,
         friction: 0.9,
-        ..Self::PLAIN
-    };
-
-    /// All presets, by the names of their files in the repository's `assets/fabrics`.
-    pub const PRESETS: [(&'static str, Self); 8] = [
-        ("cotton_jersey", Self::COTTON_JERSEY),
-        ("cotton_woven", Self::COTTON_WOVEN),
-        ("denim", Self::DENIM),
-        ("polyester_tablecloth", Self::POLYESTER_TABLECLOTH),
-        ("silk", Self::SILK),
-        ("wool_flannel", Self::WOOL_FLANNEL),
-        ("leather", Self::LEATHER),
-        ("rubber", Self::RUBBER),
-    ];
+    }
 }

@@ -109,7 +109,7 @@ pub(super) fn show_buttons(ui: &mut Ui, model: &mut Model) {
 fn show_reverts(ui: &mut Ui, model: &mut Model) {
     const CLOTH: Naming = naming(
         "This cloth",
-        "Settings, fabric and pins of the chosen cloth as they were once it was ready. It follows its fabric's file \
+        "Settings, fabric, springs and pins of the chosen cloth as they were once it was ready. It follows its fabric's file \
          again.",
     );
     const SURROUNDINGS: Naming = naming("Wind and gravity", "Gravity and all winds as they were. Added winds go.");
@@ -126,8 +126,10 @@ fn show_reverts(ui: &mut Ui, model: &mut Model) {
 }
 
 fn show_copies(ui: &mut Ui, model: &Model) {
-    const RUST: Naming =
-        naming("Copy as Rust", "The code of the components Cloth and Fabric, without what is default.");
+    const RUST: Naming = naming(
+        "Copy as Rust",
+        "The code of Cloth, Fabric and, where it is there, ClothSprings, without what is default.",
+    );
     const RON: Naming = naming("Copy as RON", "The fabric as the text of a .fabric.ron file.");
     let settings = &model.settings;
     if entry(ui, RUST)

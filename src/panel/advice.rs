@@ -5,7 +5,7 @@ use bevy::{math::Vec3A, prelude::*};
 use super::number;
 use crate::{
     cloth::ClothSolver,
-    solver::{SpringKind, Topology},
+    solver::{Elasticity, Material, Moduli, SpringKind, Topology},
     state::ClothState,
 };
 
@@ -26,8 +26,7 @@ pub(super) struct Situation {
     pub substeps: u32,
     pub max_substeps: u32,
     pub has_tethers: bool,
-    /// Of the structural springs, N/m.
-    pub stiffness: f32,
+    pub stiffness: Stiffness,
     /// Share of the stiffness that the explicit solver could use.
     pub stiffness_scale: f32,
     /// Substeps that the explicit solver needs for all of it.
@@ -36,6 +35,44 @@ pub(super) struct Situation {
     pub strain: f32,
     /// [`overload`] over the last while.
     pub overload: f32,
+}
+
+/// How stiff threads are, as a game sets it, N/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Stiffness {
+    /// Of plain springs.
+    Structural(f32),
+    /// Of a fabric: the greater of the two.
+    WarpOrWeft(f32),
+}
+
+impl Stiffness {
+    /// What is in force.
+    pub fn of(material: &Material) -> Self {
+        match &material.elasticity {
+            Elasticity::Springs([structural, ..]) => Self::Structural(structural.stiffness),
+            Elasticity::Moduli(moduli) => Self::WarpOrWeft(pulled(moduli)),
+        }
+    }
+
+    /// What it is called, and its value.
+    fn told(self) -> (&'static str, f32) {
+        match self {
+            Self::Structural(stiffness) => ("the structural stiffness", stiffness),
+            Self::WarpOrWeft(stiffness) => ("warp and weft stiffness", stiffness),
+        }
+    }
+}
+
+/// Force over width and strain of a strip along the stiffer threads, N/m: the other way round than
+/// [`Moduli::from_strips`].
+fn pulled(moduli: &Moduli) -> f32 {
+    let Moduli { stretch: [warp, weft], shear, compression, .. } = *moduli;
+    let strip = |along: f32, across: f32| {
+        let pressed = shear + compression * (across - shear);
+        if pressed > 0.0 { along - shear * shear / pressed } else { along }
+    };
+    strip(warp, weft).max(strip(weft, warp))
 }
 
 /// What is wrong where a cloth isn't solved well.
@@ -72,6 +109,7 @@ fn raise_limit(situation: &Situation) -> String {
 
 fn raise_substeps(situation: &Situation) -> String {
     let Situation { substeps, stiffness, strain, overload, has_tethers, .. } = *situation;
+    let (name, stiffness) = stiffness.told();
     // Until either of the two no longer shows, and a little farther.
     let excess = (overload / EXCESS).min(strain / VISIBLE) * 1.2;
     let factor = bevy::math::ops::powf(excess, 1.0 / RATE);
@@ -84,7 +122,7 @@ fn raise_substeps(situation: &Situation) -> String {
     };
     format!(
         "Threads are stretched by up to {} %, {} times as much as what pulls at the cloth can explain: {substeps} {} too \
-         few for {} N/m. {raise} lower the stiffness to {} N/m, which it amounts to now.",
+         few for {} N/m. {raise} lower {name} to {} N/m, as it behaves now.",
         two_digits(strain * 100.0),
         two_digits(overload),
         if substeps == 1 { "substep is" } else { "substeps are" },
@@ -156,13 +194,14 @@ fn are_pins_apart(state: &ClothState) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fabric::Fabric;
 
     const GOOD: Situation = Situation {
         solver: ClothSolver::Xpbd,
         substeps: 8,
         max_substeps: 512,
         has_tethers: false,
-        stiffness: 5000.0,
+        stiffness: Stiffness::Structural(5000.0),
         stiffness_scale: 1.0,
         needed: 1,
         strain: 0.01,
@@ -190,11 +229,28 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("Raise the substeps to 48, turn tethers on"), "{text}");
-        assert!(text.contains("200 N/m"), "{text}");
+        assert!(text.contains("lower the structural stiffness to 200 N/m"), "{text}");
+        let text = full(&Situation { stiffness: Stiffness::WarpOrWeft(4000.0), ..bad });
+        assert!(text.contains("for 4000 N/m") && text.contains("lower warp and weft stiffness to 160 N/m"), "{text}");
         let text = full(&Situation { has_tethers: true, ..bad });
         assert!(!text.contains("tethers"), "{text}");
         let worse = full(&Situation { strain: 13.0, overload: 5000.0, ..bad });
         assert!(worse.contains("Turn tethers on, raise"), "{worse}");
+    }
+
+    #[test]
+    fn a_fabrics_stiffness_is_told_as_it_was_set() {
+        for fabric in Fabric::PRESETS.map(|preset| preset.fabric) {
+            for compression in [1.0, 0.2] {
+                let fabric = Fabric { compression, ..fabric.clone() };
+                let most = fabric.warp_stiffness.max(fabric.weft_stiffness);
+                let told = Stiffness::of(&fabric.material().expect("a preset"));
+                assert!(
+                    matches!(told, Stiffness::WarpOrWeft(k) if (k / most - 1.0).abs() < 1e-4),
+                    "{told:?} for {most}"
+                );
+            }
+        }
     }
 
     #[test]

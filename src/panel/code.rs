@@ -111,7 +111,7 @@ mod tests {
             ..default()
         }));
         assert_written(written!(Cloth { tether_slack: Some(0.01), ..default() }));
-        assert_written(written!(Fabric { density: 0.15, lift: 1e-10, ..default() }));
+        assert_written(written!(Fabric { density: 0.25, lift: 1e-10, ..default() }));
         assert_written(written!(Fabric::default()));
         assert_written(written!(Wind {
             velocity: Vec3::new(4.0, 0.0, -1.5),

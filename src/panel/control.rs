@@ -18,13 +18,29 @@ pub(super) const fn naming(name: &'static str, hover: &'static str) -> Naming {
     Naming { name, hover }
 }
 
+/// What there is to say of a value besides what it is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Aside<'a> {
+    /// The chosen cloths don't have it in common.
+    pub differs: bool,
+    /// A sentence, or nothing.
+    pub note: &'a str,
+}
+
+impl From<bool> for Aside<'_> {
+    fn from(differs: bool) -> Self {
+        Self { differs, note: "" }
+    }
+}
+
 /// A row with a name and, behind it, what `content` adds and joins to the name's response.
-pub(super) fn row<R>(
+pub(super) fn row<'a, R>(
     ui: &mut Ui,
     naming: Naming,
-    differs: bool,
+    aside: impl Into<Aside<'a>>,
     content: impl FnOnce(&mut Ui, Response) -> (Response, R),
 ) -> R {
+    let Aside { differs, note } = aside.into();
     let content = |ui: &mut Ui| {
         let height = ui.spacing().interact_size.y;
         let name = ui
@@ -35,11 +51,9 @@ pub(super) fn row<R>(
             })
             .inner;
         let (response, result) = content(ui, name);
-        if differs {
-            explain(response, &format!("{}\n\nThe cloths differ here; the first one's is shown.", naming.hover));
-        } else {
-            explain(response, naming.hover);
-        }
+        let differs = if differs { "The cloths differ here; the first one's is shown." } else { "" };
+        let parts = [naming.hover, note, differs].into_iter().filter(|part| !part.is_empty());
+        explain(response, &parts.collect::<Vec<_>>().join("\n\n"));
         result
     };
     group(ui, naming.name, |ui| ui.horizontal(content).inner)
@@ -92,15 +106,15 @@ pub(super) fn entry(ui: &mut Ui, naming: Naming) -> bool {
 }
 
 /// A row with a list to choose from. `entries` are what is chosen, its name and its explanation.
-pub(super) fn choice<T: Copy + PartialEq>(
+pub(super) fn choice<'a, T: Copy + PartialEq>(
     ui: &mut Ui,
     naming: Naming,
-    differs: bool,
+    aside: impl Into<Aside<'a>>,
     chosen: Option<T>,
     otherwise: &str,
     entries: &[(T, &str, &str)],
 ) -> Option<T> {
-    row(ui, naming, differs, |ui, name| {
+    row(ui, naming, aside, |ui, name| {
         let text = entries.iter().find(|(value, ..)| Some(*value) == chosen).map_or(otherwise, |(_, text, _)| text);
         let mut new = None;
         let list = ComboBox::from_id_salt(naming.name).selected_text(text).width(ui.available_width()).truncate();

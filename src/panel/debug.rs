@@ -58,7 +58,13 @@ const SWITCHES: [Switch; 8] = [
     (naming("Shear springs", "Springs along the diagonals, in the same colours and paler."), |view| {
         &mut view.shear_springs
     }),
-    (naming("Bend springs", "Springs between particles two steps apart, paler still."), |view| &mut view.bend_springs),
+    (
+        naming(
+            "Bend springs",
+            "Springs between particles two steps apart, paler still. They act where a cloth has ClothSprings.",
+        ),
+        |view| &mut view.bend_springs,
+    ),
     (
         naming(
             "Pins",

@@ -23,21 +23,40 @@ pub(super) fn differing<T: Struct>(a: &T, b: &T) -> impl Iterator<Item = usize> 
 /// Writes the fields in which `after` differs from `before` into an entity's component. True where that changed it.
 pub(super) fn write<T>(world: &mut World, entity: Entity, before: &T, after: &T) -> bool
 where
-    T: Component<Mutability = Mutable> + Struct,
+    T: Component<Mutability = Mutable> + Struct + Clone,
+{
+    write_good(world, entity, before, after, |_| true)
+}
+
+/// The same, unless that made one that `is_good` bad.
+pub(super) fn write_good<T>(
+    world: &mut World,
+    entity: Entity,
+    before: &T,
+    after: &T,
+    is_good: impl Fn(&T) -> bool,
+) -> bool
+where
+    T: Component<Mutability = Mutable> + Struct + Clone,
 {
     let Some(mut component) = world.get_mut::<T>(entity) else { return false };
+    let mut edited = component.clone();
     let mut is_changed = false;
     for i in differing(before, after) {
         let (Some(new), Some(old)) = (after.field_at(i), component.field_at(i)) else { continue };
         if !same(new, old)
-            && let Some(field) = component.field_at_mut(i)
+            && let Some(field) = edited.field_at_mut(i)
         {
             // Not applied: that would merge lists, and never shorten one.
             let new = new.reflect_clone().ok().zip(field.try_as_reflect_mut());
             is_changed |= new.is_some_and(|(new, field)| field.set(new).is_ok());
         }
     }
-    is_changed
+    let is_written = is_changed && (is_good(&edited) || !is_good(&component));
+    if is_written {
+        *component = edited;
+    }
+    is_written
 }
 
 #[cfg(test)]
@@ -67,9 +86,21 @@ mod tests {
     }
 
     #[test]
+    fn an_edit_that_makes_a_bad_value_of_a_good_one_isnt_written() {
+        let mut world = World::new();
+        let is_light = |fabric: &Fabric| fabric.density < 1.0;
+        let (before, after) = (Fabric::default(), Fabric { density: 2.0, ..default() });
+        let light = world.spawn(Fabric { friction: 0.9, ..default() }).id();
+        assert!(!write_good(&mut world, light, &before, &after, is_light));
+        assert_eq!(world.get(light), Some(&Fabric { friction: 0.9, ..default() }));
+        let heavy = world.spawn(Fabric { density: 3.0, ..default() }).id();
+        assert!(write_good(&mut world, heavy, &before, &after, is_light), "what is bad may be edited");
+    }
+
+    #[test]
     fn a_nan_that_nobody_has_edited_is_left_alone() {
         let nan = Fabric { lift: f32::NAN, ..default() };
         assert_eq!(differing(&nan, &nan.clone()).count(), 0);
-        assert_eq!(differing(&nan, &Fabric::default()).collect::<Vec<_>>(), [11]);
+        assert_eq!(differing(&nan, &Fabric::default()).collect::<Vec<_>>(), [14]);
     }
 }

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{DragValue, Response, Slider, SliderClamping, Ui, vec2};
 
 use super::{
-    control::{Naming, naming, row},
+    control::{Aside, Naming, naming, row},
     number,
 };
 
@@ -15,6 +15,8 @@ const VALUE_WIDTH: f32 = 86.0;
 pub(super) struct Knob {
     naming: Naming,
     unit: &'static str,
+    /// What is shown and entered over the value: 1000 where a value in m is shown in mm.
+    factor: f64,
     /// The ends of the slider: the sensible range.
     range: (f32, f32),
     scale: Scale,
@@ -41,7 +43,7 @@ impl Knob {
         limits: (f32, f32),
         hover: &'static str,
     ) -> Self {
-        Self { naming: naming(name, hover), unit, range, scale: Scale::Linear, limits }
+        Self { naming: naming(name, hover), unit, factor: 1.0, range, scale: Scale::Linear, limits }
     }
 
     /// A slider over orders of magnitude, with the smallest value besides zero.
@@ -54,32 +56,42 @@ impl Knob {
         Self { scale: Scale::Whole, ..self }
     }
 
+    /// The value is shown in a unit of which so many are one of its own.
+    pub const fn shown_as(self, unit: &'static str, factor: f64) -> Self {
+        Self { unit, factor, ..self }
+    }
+
+    /// Takes only what is within these limits as well.
+    pub fn within(self, (least, most): (f32, f32)) -> Self {
+        Self { limits: (self.limits.0.max(least), self.limits.1.min(most)), ..self }
+    }
+
     /// The nearest number that may be used, and none for what is no number.
-    fn accept(&self, entered: f64) -> Option<f32> {
-        let nearest = entered.clamp(self.limits.0.into(), self.limits.1.into());
+    pub fn accept(&self, entered: f64) -> Option<f32> {
+        let nearest = (entered / self.factor).clamp(self.limits.0.into(), self.limits.1.into());
         let nearest = if self.scale == Scale::Whole { nearest.round() } else { nearest };
         // The sum gets rid of a negative zero.
         entered.is_finite().then_some(nearest as f32 + 0.0)
     }
 
     /// A row with the name, a slider and a value to type. True where `value` has been changed.
-    pub fn show(&self, ui: &mut Ui, value: &mut f32, differs: bool) -> bool {
-        let entered = row(ui, self.naming, differs, |ui, name| {
-            let mut slid = drawable(*value);
+    pub fn show<'a>(&self, ui: &mut Ui, value: &mut f32, aside: impl Into<Aside<'a>>) -> bool {
+        let entered = row(ui, self.naming, aside, |ui, name| {
+            let mut slid = self.shown(*value);
             let (low, high) = self.range;
-            let slider = Slider::new(&mut slid, f64::from(low)..=f64::from(high))
+            let slider = Slider::new(&mut slid, self.shown(low)..=self.shown(high))
                 .show_value(false)
                 .clamping(SliderClamping::Edits);
             let slider = match self.scale {
                 Scale::Linear => slider,
-                Scale::Logarithmic(smallest) => slider.logarithmic(true).smallest_positive(smallest.into()),
+                Scale::Logarithmic(smallest) => slider.logarithmic(true).smallest_positive(self.shown(smallest)),
                 Scale::Whole => slider.step_by(1.0),
             };
             let beside = VALUE_WIDTH + ui.spacing().item_spacing.x;
             ui.spacing_mut().slider_width = (ui.available_width() - beside).max(40.0);
             let slider = ui.add(slider).labelled_by(name.id);
             let (field, typed) = self.field(ui, VALUE_WIDTH, *value, &name);
-            let slid = (slid != drawable(*value)).then_some(slid);
+            let slid = (slid != self.shown(*value)).then_some(slid);
             (name | slider | field, typed.or(slid))
         });
         self.take(entered, value)
@@ -112,16 +124,16 @@ impl Knob {
 
     /// A value to type or to drag, and what was entered.
     fn field(&self, ui: &mut Ui, width: f32, value: f32, name: &Response) -> (Response, Option<f64>) {
-        let shown = drawable(value);
+        let shown = self.shown(value);
         let mut typed = shown;
-        let (low, high) = self.range;
+        let (low, high) = (self.shown(self.range.0), self.shown(self.range.1));
         let speed = match self.scale {
-            Scale::Linear => f64::from(high - low) / 300.0,
-            Scale::Logarithmic(smallest) => (shown.abs() * 0.01).max(f64::from(smallest)),
+            Scale::Linear => (high - low) / 300.0,
+            Scale::Logarithmic(smallest) => (shown.abs() * 0.01).max(self.shown(smallest)),
             Scale::Whole => 0.1,
         };
         let field = DragValue::new(&mut typed)
-            .range(self.limits.0..=self.limits.1)
+            .range(self.shown(self.limits.0)..=self.shown(self.limits.1))
             .clamp_existing_to_range(false)
             // Half a number is no number that a cloth should have.
             .update_while_editing(false)
@@ -136,16 +148,16 @@ impl Knob {
         (response, is_typed.then_some(typed))
     }
 
+    /// A value as it is drawn: a game may have made it NaN.
+    fn shown(&self, value: f32) -> f64 {
+        if value.is_nan() { 0.0 } else { f64::from(value) * self.factor }
+    }
+
     /// True where something that is accepted was entered.
     fn take(&self, entered: Option<f64>, value: &mut f32) -> bool {
         let accepted = entered.and_then(|entered| self.accept(entered));
         accepted.inspect(|&accepted| *value = accepted).is_some()
     }
-}
-
-/// A value as it can be drawn: a game may have made it NaN.
-fn drawable(value: f32) -> f64 {
-    if value.is_nan() { 0.0 } else { value.into() }
 }
 
 #[cfg(test)]
@@ -163,6 +175,15 @@ mod tests {
             prop_assert_eq!(accepted.is_some(), entered.is_finite());
             prop_assert!(accepted.is_none_or(|value| (limits.0..=limits.1).contains(&value)));
         }
+    }
+
+    #[test]
+    fn what_is_shown_in_another_unit_is_entered_in_it() {
+        let knob = Knob::new("", "m", (0.0, 1.0), (0.0, 1.0), "").shown_as("mm", 1e3);
+        assert_eq!(knob.accept(0.32), Some(0.000_32));
+        assert_eq!(knob.accept(5000.0), Some(1.0));
+        assert_eq!(number::text(knob.shown(0.000_32)), "0.32");
+        assert_eq!(knob.within((0.5, 2.0)).accept(100.0), Some(0.5));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use bevy::{
 use super::fields;
 use crate::{
     cloth::{Cloth, ClothStatus},
-    fabric::Fabric,
+    fabric::{ClothSprings, Fabric},
 };
 
 /// All entities that match, with their names, by name.
@@ -45,23 +45,32 @@ pub(super) fn trouble(world: &World, chosen: &[Entity]) -> Option<(&'static str,
 }
 
 /// Names of the fields in which cloths differ from the first.
-pub(super) fn differing(world: &World, chosen: &[Entity]) -> Vec<&'static str> {
-    let Some((first, others)) = chosen.split_first() else { return Vec::new() };
-    let mut names = Vec::new();
-    for other in others {
-        names.extend(differing_in::<Cloth>(world, *first, *other));
-        names.extend(differing_in::<Fabric>(world, *first, *other));
-    }
-    names.sort_unstable();
-    names.dedup();
-    names
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Differing {
+    pub cloth: Vec<&'static str>,
+    pub fabric: Vec<&'static str>,
+    pub springs: Vec<&'static str>,
 }
 
-fn differing_in<T>(world: &World, one: Entity, other: Entity) -> Vec<&'static str>
+impl Differing {
+    pub fn find(world: &World, chosen: &[Entity]) -> Self {
+        Self {
+            cloth: differing_in::<Cloth>(world, chosen),
+            fabric: differing_in::<Fabric>(world, chosen),
+            springs: differing_in::<ClothSprings>(world, chosen),
+        }
+    }
+}
+
+fn differing_in<T>(world: &World, chosen: &[Entity]) -> Vec<&'static str>
 where
     T: Component + Struct + Typed,
 {
-    let (Some(a), Some(b)) = (world.get::<T>(one), world.get::<T>(other)) else { return Vec::new() };
+    let mut components = chosen.iter().filter_map(|&cloth| world.get::<T>(cloth));
+    let Some(first) = components.next() else { return Vec::new() };
     let names = T::type_info().as_struct().map(|info| info.field_names()).unwrap_or_default();
-    fields::differing(a, b).filter_map(|i| names.get(i).copied()).collect()
+    let mut found: Vec<_> = components.flat_map(|other| fields::differing(first, other)).collect();
+    found.sort_unstable();
+    found.dedup();
+    found.into_iter().filter_map(|i| names.get(i).copied()).collect()
 }

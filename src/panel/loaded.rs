@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use super::{ClothPanel, memory::Memory};
 use crate::{
     cloth::{Cloth, ClothGravity, ClothStatus},
-    fabric::{Fabric, handle::FabricHandle},
+    fabric::{ClothSprings, Fabric, handle::FabricHandle},
     pins::Pins,
     wind::Wind,
 };
@@ -16,6 +16,7 @@ use crate::{
 pub(super) struct LoadedCloth {
     cloth: Cloth,
     fabric: Fabric,
+    springs: Option<ClothSprings>,
     pins: Pins,
     /// Whether it kept its fabric apart from the asset that it has a handle of.
     is_detached: bool,
@@ -29,16 +30,20 @@ pub(super) struct LoadedWind(Wind);
 /// Keeps all that is new.
 pub(super) fn remember(
     mut commands: Commands,
-    cloths: Query<(Entity, &Cloth, &Fabric, &Pins, Option<&FabricHandle>, &ClothStatus), Without<LoadedCloth>>,
+    cloths: Query<
+        (Entity, &Cloth, &Fabric, Option<&ClothSprings>, &Pins, Option<&FabricHandle>, &ClothStatus),
+        Without<LoadedCloth>,
+    >,
     winds: Query<(Entity, &Wind), Without<LoadedWind>>,
     gravity: Option<Res<ClothGravity>>,
     mut panel: ResMut<ClothPanel>,
 ) {
-    for (entity, cloth, fabric, pins, follower, status) in &cloths {
+    for (entity, cloth, fabric, springs, pins, follower, status) in &cloths {
         if *status == ClothStatus::Ready {
             commands.entity(entity).try_insert(LoadedCloth {
                 cloth: cloth.clone(),
                 fabric: fabric.clone(),
+                springs: springs.cloned(),
                 pins: pins.clone(),
                 is_detached: follower.is_some_and(|follower| follower.detached),
             });
@@ -63,9 +68,22 @@ pub(super) fn revert_cloth(world: &mut World, cloth: Entity) {
     if let Some(mut own) = world.get_mut::<Pins>(cloth) {
         own.set_if_neq(loaded.pins);
     }
+    revert_springs(world, cloth, loaded.springs);
     // Written in any case: it has the asset's values copied again, which may have come later than the cloth was ready.
     if let Some(mut follower) = world.get_mut::<FabricHandle>(cloth) {
         follower.detached = loaded.is_detached;
+    }
+}
+
+fn revert_springs(world: &mut World, cloth: Entity, loaded: Option<ClothSprings>) {
+    match (loaded, world.get_entity_mut(cloth)) {
+        (Some(loaded), Ok(mut entity)) => {
+            if entity.get::<ClothSprings>() != Some(&loaded) {
+                entity.insert(loaded);
+            }
+        }
+        (None, Ok(mut entity)) => drop(entity.remove::<ClothSprings>()),
+        (_, Err(_)) => {}
     }
 }
 

@@ -3,7 +3,9 @@
 use bevy::prelude::*;
 
 use super::{
-    ClothChoice, list, loaded,
+    ClothChoice,
+    list::{self, Differing},
+    loaded,
     memory::{Memory, Readings},
     settings::{self, Settings},
 };
@@ -27,8 +29,7 @@ pub(super) struct Model {
     /// Winds to choose from, and their names.
     pub winds: Vec<(Entity, String)>,
     pub settings: Settings,
-    /// Names of the fields in which the chosen cloths differ.
-    pub differing: Vec<&'static str>,
+    pub differing: Differing,
     /// Some of the chosen cloths follow a fabric's asset.
     pub follows_asset: bool,
     pub readings: Readings,
@@ -68,7 +69,7 @@ impl Model {
         let follows = |&cloth: &Entity| world.get::<FabricHandle>(cloth).is_some_and(|follower| !follower.detached);
         Self {
             trouble: list::trouble(world, &chosen),
-            differing: list::differing(world, &chosen),
+            differing: Differing::find(world, &chosen),
             follows_asset: chosen.iter().any(follows),
             settings: Settings::read(world, &chosen, memory),
             readings: memory.readings.clone(),

@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use super::{aim::Aim, code, fields, memory::Memory};
 use crate::{
     cloth::{Cloth, ClothGravity},
-    fabric::{Fabric, handle::FabricHandle},
+    fabric::{ClothSprings, Fabric, handle::FabricHandle},
     wind::Wind,
 };
 
@@ -14,6 +14,8 @@ use crate::{
 pub(super) struct Settings {
     /// Of the first chosen cloth.
     pub cloth: Option<(Cloth, Fabric)>,
+    /// Of the first chosen cloth, where it has them.
+    pub springs: Option<ClothSprings>,
     pub gravity: Option<Vec3>,
     pub wind: Option<(Entity, Wind, Aim)>,
     pub clock: Option<Clock>,
@@ -43,6 +45,7 @@ impl Settings {
         });
         Self {
             cloth,
+            springs: chosen.first().and_then(|&cloth| world.get(cloth).cloned()),
             wind,
             gravity: world.get_resource::<ClothGravity>().map(|gravity| gravity.0),
             clock: world
@@ -58,9 +61,15 @@ impl Settings {
         if let (Some(before), Some(after)) = (&before.cloth, &self.cloth) {
             for &cloth in chosen {
                 fields::write(world, cloth, &before.0, &after.0);
-                if fields::write(world, cloth, &before.1, &after.1) {
+                // What fits the first cloth needn't fit the others.
+                if fields::write_good(world, cloth, &before.1, &after.1, |fabric| fabric.material().is_ok()) {
                     detach(world, cloth);
                 }
+            }
+        }
+        if let (Some(before), Some(after)) = (&before.springs, &self.springs) {
+            for &cloth in chosen {
+                fields::write(world, cloth, before, after);
             }
         }
         if let (Some((_, old, old_aim)), Some((entity, wind, aim))) = (&before.wind, &self.wind) {
@@ -89,7 +98,9 @@ impl Settings {
     /// The chosen cloth as Rust code.
     pub fn cloth_code(&self) -> Option<String> {
         let (cloth, fabric) = self.cloth.as_ref()?;
-        Some(format!("{},\n{},\n", code::component(cloth), code::component(fabric)))
+        let springs = self.springs.as_ref().map(code::component);
+        let parts = [code::component(cloth), code::component(fabric)].into_iter().chain(springs);
+        Some(parts.map(|part| part + ",\n").collect())
     }
 
     /// The chosen wind as Rust code.

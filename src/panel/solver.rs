@@ -73,6 +73,16 @@ const SLACK: Knob = Knob::new(
      it tremble.",
 );
 
+const MARGIN: Knob = Knob::new(
+    "Contact margin",
+    "m",
+    (0.0, 0.05),
+    (0.0, 10.0),
+    "Distance kept from obstacles beyond the fabric's thickness, in mm. 2 to 20: more where triangles are large and \
+     obstacles poke through between their corners.",
+)
+.shown_as("mm", 1e3);
+
 const SOLVERS: [(ClothSolver, &str, &str); 3] = [
     (ClothSolver::Strands, "Strands", "Each thread solved exactly: the least stretch for the time. For games."),
     (ClothSolver::Xpbd, "XPBD", "Spring by spring: stable as well, and stretched more."),
@@ -83,7 +93,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
     section(ui, naming("Solver", "How the springs are computed: speed against accuracy."), true, |ui| {
         let Model { settings, differing, .. } = &mut *model;
         let Some((cloth, _)) = &mut settings.cloth else { return };
-        let differs = |field| differing.contains(&field);
+        let differs = |field| differing.cloth.contains(&field);
         let which = naming("Solver", "How the springs are integrated: strands for games, the others to compare with.");
         if let Some(solver) = choice(ui, which, differs("solver"), Some(cloth.solver), "", &SOLVERS) {
             cloth.solver = solver;
@@ -105,6 +115,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
                 MAX_SUBSTEPS.show_count(ui, &mut cloth.max_substeps, differs("max_substeps"));
             }
         }
+        MARGIN.show(ui, &mut cloth.collision_margin, differs("collision_margin"));
         show_advice(ui, model);
     });
 }

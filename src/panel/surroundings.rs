@@ -90,8 +90,8 @@ pub(super) fn show_surroundings(ui: &mut Ui, model: &mut Model) {
             }
         }
         if let Some((cloth, _)) = &mut settings.cloth {
-            GRAVITY_SCALE.show(ui, &mut cloth.gravity_scale, differing.contains(&"gravity_scale"));
-            AIR_DENSITY.show(ui, &mut cloth.fluid_density, differing.contains(&"fluid_density"));
+            GRAVITY_SCALE.show(ui, &mut cloth.gravity_scale, differing.cloth.contains(&"gravity_scale"));
+            AIR_DENSITY.show(ui, &mut cloth.fluid_density, differing.cloth.contains(&"fluid_density"));
         }
     });
 }

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use bevy::prelude::*;
 
 use super::{
-    advice::{self, Situation},
+    advice::{self, Situation, Stiffness},
     memory::{Memory, Readings},
 };
 use crate::{
@@ -122,7 +122,7 @@ fn situation(state: &ClothState, watch: &Watch) -> Option<Situation> {
         substeps,
         max_substeps,
         has_tethers: tether_slack.is_some(),
-        stiffness: state.material?.thread_stiffness().stiffness,
+        stiffness: Stiffness::of(&state.material?),
         stiffness_scale,
         needed: state.report().map_or(substeps, |report| report.needed_substeps),
         strain,

@@ -81,9 +81,9 @@ fn a_collider_that_is_mended_works_again() {
     run(&mut app, 5);
     *get_mut::<Transform>(&mut app, ground) = Transform::from_xyz(0.0, -0.5, 0.0);
     run(&mut app, 60);
-    let thickness = Fabric::default().thickness;
+    let distance = Fabric::default().thickness + Cloth::default().collision_margin;
     for place in positions(&app, cloth) {
-        assert!((place.y + 0.5 - thickness).abs() < 1e-3, "{place}");
+        assert!((place.y + 0.5 - distance).abs() < 1e-3, "{place}");
     }
 }
 

@@ -10,22 +10,34 @@ const NOT_FINITE: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
 
 type Field<C> = (&'static str, fn(&mut C, f32));
 
-const FABRIC: [Field<Fabric>; 12] = [
+const FABRIC: [Field<Fabric>; 15] = [
     ("Fabric::density", |fabric, value| fabric.density = value),
-    ("Fabric::structural_stiffness", |fabric, value| fabric.structural_stiffness = value),
+    ("Fabric::thickness", |fabric, value| fabric.thickness = value),
+    ("Fabric::warp_stiffness", |fabric, value| fabric.warp_stiffness = value),
+    ("Fabric::weft_stiffness", |fabric, value| fabric.weft_stiffness = value),
+    ("Fabric::warp_stiffening", |fabric, value| fabric.warp_stiffening = value),
+    ("Fabric::weft_stiffening", |fabric, value| fabric.weft_stiffening = value),
+    ("Fabric::compression", |fabric, value| fabric.compression = value),
     ("Fabric::shear_stiffness", |fabric, value| fabric.shear_stiffness = value),
-    ("Fabric::bend_stiffness", |fabric, value| fabric.bend_stiffness = value),
-    ("Fabric::structural_damping", |fabric, value| fabric.structural_damping = value),
-    ("Fabric::shear_damping", |fabric, value| fabric.shear_damping = value),
+    ("Fabric::bending_rigidity", |fabric, value| fabric.bending_rigidity = value),
+    ("Fabric::stretch_damping", |fabric, value| fabric.stretch_damping = value),
     ("Fabric::bend_damping", |fabric, value| fabric.bend_damping = value),
     ("Fabric::damping", |fabric, value| fabric.damping = value),
-    ("Fabric::thickness", |fabric, value| fabric.thickness = value),
     ("Fabric::friction", |fabric, value| fabric.friction = value),
     ("Fabric::drag", |fabric, value| fabric.drag = value),
     ("Fabric::lift", |fabric, value| fabric.lift = value),
 ];
 
-const CLOTH: [Field<Cloth>; 7] = [
+const SPRINGS: [Field<ClothSprings>; 6] = [
+    ("ClothSprings::structural_stiffness", |springs, value| springs.structural_stiffness = value),
+    ("ClothSprings::shear_stiffness", |springs, value| springs.shear_stiffness = value),
+    ("ClothSprings::bend_stiffness", |springs, value| springs.bend_stiffness = value),
+    ("ClothSprings::structural_damping", |springs, value| springs.structural_damping = value),
+    ("ClothSprings::shear_damping", |springs, value| springs.shear_damping = value),
+    ("ClothSprings::bend_damping", |springs, value| springs.bend_damping = value),
+];
+
+const CLOTH: [Field<Cloth>; 8] = [
     ("Cloth::max_strain", |cloth, value| cloth.max_strain = value),
     ("Cloth::substeps", |cloth, value| cloth.substeps = Some(value as u32)),
     ("Cloth::max_substeps", |cloth, value| cloth.max_substeps = value as u32),
@@ -33,6 +45,7 @@ const CLOTH: [Field<Cloth>; 7] = [
     ("Cloth::max_velocity", |cloth, value| cloth.max_velocity = value),
     ("Cloth::tether_slack", |cloth, value| cloth.tether_slack = Some(value)),
     ("Cloth::fluid_density", |cloth, value| cloth.fluid_density = value),
+    ("Cloth::collision_margin", |cloth, value| cloth.collision_margin = value),
 ];
 
 /// The component with one field of it changed.
@@ -40,6 +53,13 @@ fn with<C: Default>(set: fn(&mut C, f32), value: f32) -> C {
     let mut component = C::default();
     set(&mut component, value);
     component
+}
+
+/// A fabric with one field changed, whose shear fits whatever warp and weft.
+fn fabric_with(set: fn(&mut Fabric, f32), value: f32) -> Fabric {
+    let mut fabric = Fabric { shear_stiffness: 0.0, ..default() };
+    set(&mut fabric, value);
+    fabric
 }
 
 /// The parameter that a cloth with these components is refused for, if it is.
@@ -60,14 +80,42 @@ fn refused_for(app: &mut App, more: impl Bundle) -> Option<String> {
 fn fabrics_are_checked_field_by_field() {
     let mut app = headless();
     for (name, set) in FABRIC {
+        let mut refused = |value| refused_for(&mut app, fabric_with(set, value));
+        for bad in NOT_FINITE.into_iter().chain([-1.0]) {
+            assert_eq!(refused(bad).as_deref(), Some(name), "{name} of {bad}");
+        }
+        let field = name.trim_start_matches("Fabric::");
+        let may_be_zero = !["density", "thickness", "warp_stiffness", "weft_stiffness"].contains(&field);
+        assert_eq!(refused(0.0).as_deref(), (!may_be_zero).then_some(name), "{name} of 0");
+        assert_eq!(refused(1.0), None, "{name} of 1");
+        let is_share = field == "compression";
+        assert_eq!(refused(1.01).as_deref(), is_share.then_some(name), "{name} of 1.01");
+    }
+}
+
+#[test]
+fn plain_springs_are_checked_field_by_field() {
+    let mut app = headless();
+    for (name, set) in SPRINGS {
         let mut refused = |value| refused_for(&mut app, with(set, value));
         for bad in NOT_FINITE.into_iter().chain([-1.0]) {
             assert_eq!(refused(bad).as_deref(), Some(name), "{name} of {bad}");
         }
-        let is_density = name == "Fabric::density";
-        assert_eq!(refused(0.0).as_deref(), is_density.then_some(name), "{name} of 0");
-        assert_eq!(refused(1.0), None, "{name} of 1");
+        for good in [0.0, 1.0] {
+            assert_eq!(refused(good), None, "{name} of {good}");
+        }
     }
+}
+
+#[test]
+fn what_springs_take_the_place_of_is_not_checked() {
+    let mut app = headless();
+    let fabric = Fabric { warp_stiffness: f32::NAN, bending_rigidity: -1.0, compression: 7.0, ..default() };
+    assert_eq!(refused_for(&mut app, fabric.clone()).as_deref(), Some("Fabric::warp_stiffness"));
+    assert_eq!(refused_for(&mut app, (fabric.clone(), ClothSprings::default())), None);
+    let fabric = Fabric { thickness: 0.0, ..fabric };
+    let springs = ClothSprings { shear_damping: -1.0, ..default() };
+    assert_eq!(refused_for(&mut app, (fabric, springs)).as_deref(), Some("Fabric::thickness"));
 }
 
 #[test]
@@ -110,13 +158,46 @@ fn the_error_carries_the_value_and_the_rule() {
 }
 
 #[test]
+fn the_message_names_the_field_and_the_rule() {
+    for (fabric, expected) in [
+        (Fabric { thickness: 0.0, ..default() }, "Fabric::thickness is 0, and it has to be greater than 0 m; set"),
+        (
+            Fabric { weft_stiffness: 0.0, ..default() },
+            "Fabric::weft_stiffness is 0, and it has to be greater than 0 N/m;",
+        ),
+        (
+            Fabric { bending_rigidity: -0.5, ..default() },
+            "Fabric::bending_rigidity is -0.5, and it has to be 0 or greater;",
+        ),
+        (Fabric { compression: 1.5, ..default() }, "Fabric::compression is 1.5, and it has to be 0 to 1;"),
+        (
+            Fabric { warp_stiffness: 300.0, weft_stiffness: 100.0, shear_stiffness: 151.0, ..default() },
+            "Fabric::shear_stiffness is 151, and it has to be at most 150 N/m, the product of warp and weft stiffness over \
+             their difference",
+        ),
+    ] {
+        let message = fabric.material().unwrap_err().to_string();
+        assert!(message.starts_with(expected), "{message}");
+    }
+    let fitting = Fabric { warp_stiffness: 300.0, weft_stiffness: 100.0, shear_stiffness: 149.0, ..default() };
+    assert!(fitting.material().is_ok());
+    assert!(Fabric { shear_stiffness: 1e6, ..default() }.material().is_ok(), "warp and weft are alike");
+}
+
+#[test]
 fn extreme_values_stay_finite() {
     let mut app = headless();
     for (name, set) in FABRIC {
-        for value in [1e-30, 1e10, 1e30] {
-            let mut fabric = Fabric::default();
-            set(&mut fabric, value);
+        let is_share = name == "Fabric::compression";
+        for value in [1e-30, 1e10, 1e30].into_iter().filter(|&value| !is_share || value <= 1.0) {
+            let fabric = fabric_with(set, value);
             assert_eq!(refused_for(&mut app, (fabric, Pins::corners())), None, "{name} of {value}");
+        }
+    }
+    for (name, set) in SPRINGS {
+        for value in [1e-30, 1e10, 1e30] {
+            let springs = with(set, value);
+            assert_eq!(refused_for(&mut app, (springs, Pins::corners())), None, "{name} of {value}");
         }
     }
     for solver in [ClothSolver::Strands, ClothSolver::Xpbd] {
@@ -142,9 +223,13 @@ fn a_value_that_turns_bad_is_ignored_and_the_cloth_goes_on() {
     let (mut app, cloth) = good();
     run(&mut app, 20);
     let expected = positions(&app, cloth);
-    let breaks: [fn(&mut App, Entity); 5] = [
+    let breaks: [fn(&mut App, Entity); 6] = [
         |app, cloth| get_mut::<Fabric>(app, cloth).density = 0.0,
-        |app, cloth| get_mut::<Fabric>(app, cloth).structural_stiffness = f32::NAN,
+        |app, cloth| get_mut::<Fabric>(app, cloth).bending_rigidity = f32::NAN,
+        |app, cloth| {
+            let springs = ClothSprings { bend_stiffness: -1.0, ..default() };
+            app.world_mut().entity_mut(cloth).insert(springs);
+        },
         |app, cloth| get_mut::<Cloth>(app, cloth).substeps = Some(0),
         |app, cloth| get_mut::<Cloth>(app, cloth).gravity_scale = f32::INFINITY,
         |app, cloth| *get_mut::<Pins>(app, cloth) = Pins::indices([99]),

@@ -11,10 +11,10 @@ const FLOATING: f32 = 0.0;
 /// A cloth of 1 kg in 16 cells without springs, weight and air: each particle is on its own.
 fn dust(pins: Pins) -> (App, Entity) {
     let mut app = headless();
-    let fabric =
-        Fabric { density: 1.0, structural_stiffness: 0.0, shear_stiffness: 0.0, bend_stiffness: 0.0, ..undamped() };
+    let fabric = Fabric { density: 1.0, ..undamped() };
+    let springs = ClothSprings { structural_stiffness: 0.0, shear_stiffness: 0.0, bend_stiffness: 0.0, ..default() };
     let cloth = Cloth { gravity_scale: FLOATING, tether_slack: None, ..default() };
-    let cloth = spawn_cloth(&mut app, GRID, (fabric, cloth, pins));
+    let cloth = spawn_cloth(&mut app, GRID, (fabric, springs, cloth, pins));
     run(&mut app, 1);
     (app, cloth)
 }

@@ -9,6 +9,7 @@ mod bad_surroundings;
 mod bad_transforms;
 mod bad_values;
 mod changed_mesh;
+mod coarse_meshes;
 mod collision_mask;
 mod commands;
 #[cfg(feature = "debug")]
@@ -28,8 +29,10 @@ mod missing_plugins;
 mod obstacles;
 mod pin_selectors;
 mod pin_targets;
+mod plain_springs;
 #[cfg(feature = "picking")]
 mod pointers;
+mod presets;
 mod recovery;
 mod reflection;
 mod removal;

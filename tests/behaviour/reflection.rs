@@ -28,6 +28,7 @@ fn every_component_is_registered() {
         TypeId::of::<ClothStatus>(),
         TypeId::of::<Fabric>(),
         TypeId::of::<FabricHandle>(),
+        TypeId::of::<ClothSprings>(),
         TypeId::of::<Pins>(),
         TypeId::of::<ClothCollider>(),
         TypeId::of::<Wind>(),

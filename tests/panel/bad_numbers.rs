@@ -11,12 +11,15 @@ use proptest::{
 use crate::common::*;
 
 /// The values that can be typed, with how many fields there are of each.
-const FIELDS: [(&str, usize); 27] = [
-    ("Stretch", 1),
-    ("Shear", 1),
-    ("Bend", 1),
+const FIELDS: [(&str, usize); 31] = [
+    ("Warp stiffness", 1),
+    ("Weft stiffness", 1),
+    ("Warp stiffening", 1),
+    ("Weft stiffening", 1),
+    ("Compression", 1),
+    ("Shear stiffness", 1),
+    ("Bending rigidity", 1),
     ("Stretch damping", 1),
-    ("Shear damping", 1),
     ("Bend damping", 1),
     ("Density", 1),
     ("Thickness", 1),
@@ -28,6 +31,7 @@ const FIELDS: [(&str, usize); 27] = [
     ("Substeps", 1),
     ("Tether slack", 1),
     ("Largest speed", 1),
+    ("Contact margin", 1),
     ("Gravity, m/s²", 3),
     ("Gravity scale", 1),
     ("Air density", 1),
@@ -98,6 +102,13 @@ fn what_is_out_of_range_becomes_the_nearest_within() {
     let (mut desk, cloth, wind) = desk();
     desk.type_value("Density", "-5");
     assert_eq!(desk.get::<Fabric>(cloth).density, 0.001);
+    desk.type_value("Thickness", "0");
+    assert_eq!(desk.get::<Fabric>(cloth).thickness, 1e-6);
+    desk.type_value("Compression", "3");
+    assert_eq!(desk.get::<Fabric>(cloth).compression, 1.0);
+    desk.type_value("Weft stiffness", "2000");
+    desk.type_value("Shear stiffness", "1e6");
+    assert_eq!(desk.get::<Fabric>(cloth).shear_stiffness, 4000.0, "4000 · 2000 / (4000 - 2000)");
     desk.type_value("Substeps", "0");
     assert_eq!(desk.get::<Cloth>(cloth).substeps, Some(1));
     desk.type_value("Substeps", "2.6");

@@ -17,7 +17,10 @@ fn the_first_by_name_comes_first_and_another_can_be_chosen() {
     let curtain = spawn_cloth(&mut app, "Curtain", ());
     let mut desk = Desk::new(app);
     desk.type_value("Density", "0.5");
-    assert_eq!((desk.get::<Fabric>(curtain).density, desk.get::<Fabric>(flag).density), (0.5, 0.2));
+    assert_eq!(
+        (desk.get::<Fabric>(curtain).density, desk.get::<Fabric>(flag).density),
+        (0.5, Fabric::default().density)
+    );
     desk.choose(Role::ComboBox, "Cloth", "Flag");
     desk.type_value("Density", "0.7");
     assert_eq!((desk.get::<Fabric>(curtain).density, desk.get::<Fabric>(flag).density), (0.5, 0.7));
@@ -54,6 +57,18 @@ fn an_edit_of_all_writes_one_value_to_each() {
 }
 
 #[test]
+fn an_edit_of_all_leaves_a_cloth_alone_that_it_doesnt_fit() {
+    let mut app = app();
+    let cotton = spawn_cloth(&mut app, "Cotton", ());
+    let denim = spawn_cloth(&mut app, "Denim", Fabric::DENIM);
+    let mut desk = Desk::new(app);
+    desk.choose(Role::ComboBox, "Cloth", "All 2 cloths");
+    desk.type_value("Shear stiffness", "2000");
+    assert_eq!(desk.get::<Fabric>(cotton), &Fabric { shear_stiffness: 2000.0, ..default() });
+    assert_eq!(desk.get::<Fabric>(denim), &Fabric::DENIM, "its warp and weft differ too much");
+}
+
+#[test]
 fn numbers_of_all_are_sums() {
     let mut app = app();
     let cloths = ["A", "B", "C"].map(|name| spawn_cloth(&mut app, name, ()));
@@ -74,7 +89,7 @@ fn names_that_are_there_twice_are_told_apart() {
     let mut desk = Desk::new(app);
     desk.choose(Role::ComboBox, "Cloth", &format!("Flag ({two})"));
     desk.type_value("Density", "0.7");
-    assert_eq!((desk.get::<Fabric>(one).density, desk.get::<Fabric>(two).density), (0.2, 0.7));
+    assert_eq!((desk.get::<Fabric>(one).density, desk.get::<Fabric>(two).density), (Fabric::default().density, 0.7));
 }
 
 #[test]

@@ -33,14 +33,27 @@ fn the_edited_cloth_is_copied_as_rust() {
     assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some("Cloth::default(),\nFabric::default(),\n"));
     desk.click(Role::CheckBox, "Substeps by hand");
     desk.type_value("Substeps", "12");
-    desk.type_value("Density", "0.15");
-    desk.type_value("Bend", "5");
+    desk.type_value("Density", "0.2");
+    desk.type_value("Bending rigidity", "5");
     let expected =
-        "Cloth { substeps: Some(12), ..default() },\nFabric { density: 0.15, bend_stiffness: 5.0, ..default() },\n";
+        "Cloth { substeps: Some(12), ..default() },\nFabric { density: 0.2, bending_rigidity: 5e-6, ..default() },\n";
     assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some(expected));
     // What was copied, as code.
     let _: (Cloth, Fabric) =
-        (Cloth { substeps: Some(12), ..default() }, Fabric { density: 0.15, bend_stiffness: 5.0, ..default() });
+        (Cloth { substeps: Some(12), ..default() }, Fabric { density: 0.2, bending_rigidity: 5e-6, ..default() });
+}
+
+#[test]
+fn springs_are_copied_as_rust_where_there_are_any() {
+    let mut app = app();
+    spawn_cloth(&mut app, "Curtain", ClothSprings::default());
+    let mut desk = Desk::new(app);
+    desk.type_value("Bend", "5");
+    let expected = "Cloth::default(),\nFabric::default(),\nClothSprings { bend_stiffness: 5.0, ..default() },\n";
+    assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some(expected));
+    // What was copied, as code.
+    let _: (Cloth, Fabric, ClothSprings) =
+        (Cloth::default(), Fabric::default(), ClothSprings { bend_stiffness: 5.0, ..default() });
 }
 
 #[test]

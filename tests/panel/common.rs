@@ -38,6 +38,7 @@ pub fn app_with(plugin: impl Plugin) -> App {
             (
                 hear::<Cloth>,
                 hear::<Fabric>,
+                hear::<ClothSprings>,
                 hear::<Pins>,
                 hear::<Wind>,
                 |gravity: Res<ClothGravity>, mut heard: ResMut<Heard>| {

@@ -11,10 +11,10 @@ fn a_slider_changes_its_own_field_and_no_other() {
     let mut app = app();
     let cloth = spawn_cloth(&mut app, "Curtain", ());
     let mut desk = Desk::new(app);
-    desk.slide("Bend", 0.9);
+    desk.slide("Bending rigidity", 0.9);
     let fabric = desk.get::<Fabric>(cloth).clone();
-    assert!(fabric.bend_stiffness > 1000.0, "{fabric:?}");
-    assert_eq!(fabric, Fabric { bend_stiffness: fabric.bend_stiffness, ..default() });
+    assert!(fabric.bending_rigidity > 1e-3, "{fabric:?}");
+    assert_eq!(fabric, Fabric { bending_rigidity: fabric.bending_rigidity, ..default() });
     assert_eq!(desk.get::<Cloth>(cloth), &Cloth::default());
     assert_eq!(desk.heard().changed, ["Fabric"]);
 }
@@ -27,14 +27,17 @@ fn every_value_can_be_typed() {
     let mut desk = Desk::new(app);
     desk.click(Role::CheckBox, "Substeps by hand");
     for (name, text) in [
-        ("Stretch", "1200 N/m"),
-        ("Shear", "120"),
-        ("Bend", "6"),
-        ("Stretch damping", "0.01"),
-        ("Shear damping", "0.02"),
-        ("Bend damping", "0.03"),
+        ("Warp stiffness", "1200 N/m"),
+        ("Weft stiffness", "900"),
+        ("Warp stiffening", "11"),
+        ("Weft stiffening", "7.5"),
+        ("Compression", "0.3"),
+        ("Shear stiffness", "120"),
+        ("Bending rigidity", "6 µN·m"),
+        ("Stretch damping", "10"),
+        ("Bend damping", "30 ms"),
         ("Density", "0.235"),
-        ("Thickness", "0.004"),
+        ("Thickness", "0.4 mm"),
         ("Friction", "0.45"),
         ("Drag", "1"),
         ("Lift", "0.1"),
@@ -43,6 +46,7 @@ fn every_value_can_be_typed() {
         ("Substeps", "17"),
         ("Tether slack", "0.02"),
         ("Largest speed", "30 m/s"),
+        ("Contact margin", "8 mm"),
         ("Gravity scale", "-0.5"),
         ("Air density", "1.5"),
     ] {
@@ -50,14 +54,17 @@ fn every_value_can_be_typed() {
     }
     let fabric = Fabric {
         density: 0.235,
-        structural_stiffness: 1200.0,
+        thickness: 0.0004,
+        warp_stiffness: 1200.0,
+        weft_stiffness: 900.0,
+        warp_stiffening: 11.0,
+        weft_stiffening: 7.5,
+        compression: 0.3,
         shear_stiffness: 120.0,
-        bend_stiffness: 6.0,
-        structural_damping: 0.01,
-        shear_damping: 0.02,
+        bending_rigidity: 6e-6,
+        stretch_damping: 0.01,
         bend_damping: 0.03,
         damping: 0.5,
-        thickness: 0.004,
         friction: 0.45,
         drag: 1.0,
         lift: 0.1,
@@ -70,6 +77,7 @@ fn every_value_can_be_typed() {
         max_velocity: 30.0,
         gravity_scale: -0.5,
         fluid_density: 1.5,
+        collision_margin: 0.008,
         ..default()
     };
     assert_eq!(desk.get::<Cloth>(cloth), &settings);
@@ -170,7 +178,7 @@ fn an_edit_acts_in_the_next_step_and_the_cloth_moves_on() {
     let before = fallen(&desk);
     desk.type_value("Gravity scale", "0");
     desk.type_value("Density", "1");
-    desk.choose(Role::ComboBox, "Preset", "wool");
+    desk.choose(Role::ComboBox, "Preset", "wool flannel");
     desk.click(Role::CheckBox, "Substeps by hand");
     desk.slide("Substeps", 0.5);
     let state = desk.get::<ClothState>(cloth);

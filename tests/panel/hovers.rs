@@ -72,6 +72,15 @@ fn every_control_explains_itself() {
 }
 
 #[test]
+fn every_control_of_springs_explains_itself() {
+    let mut app = app();
+    spawn_cloth(&mut app, "Curtain", ClothSprings::default());
+    let mut desk = Desk::new(app);
+    let all = controls(&desk);
+    assert_explained(&mut desk, &all);
+}
+
+#[test]
 fn every_entry_of_every_list_explains_itself() {
     let mut desk = full();
     let lists = [

@@ -15,6 +15,7 @@ mod hovers;
 mod inspector;
 mod numbers;
 mod revert;
+mod springs;
 mod warnings;
 mod window;
 mod winds;

@@ -11,7 +11,7 @@ const REVERT: &str = "Revert ⏷";
 #[test]
 fn a_cloth_goes_back_to_what_it_was_once_it_was_ready() {
     let mut app = app();
-    let loaded = (Cloth { substeps: Some(11), ..default() }, Fabric::WOOL, Pins::corners());
+    let loaded = (Cloth { substeps: Some(11), ..default() }, Fabric::WOOL_FLANNEL, Pins::corners());
     let cloth = spawn_cloth(&mut app, "Curtain", loaded.clone());
     let other = spawn_cloth(&mut app, "Flag", ());
     let mut desk = Desk::new(app);

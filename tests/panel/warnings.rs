@@ -6,11 +6,12 @@ use egui_kittest::kittest::NodeT;
 
 use crate::common::*;
 
-/// A sheet of 24 x 24 particles.
+/// A sheet of 24 x 24 particles with plain springs.
 fn hang(app: &mut App, cloth: Cloth, pins: Pins, stiffness: f32) -> Entity {
     let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(Mesh::from(ClothGrid::new(1.2, 1.2, 24, 24)));
-    let fabric = Fabric { structural_stiffness: stiffness, shear_stiffness: stiffness / 10.0, ..default() };
-    app.world_mut().spawn((Mesh3d(mesh), cloth, fabric, pins, Name::new("Sheet"))).id()
+    let fabric = Fabric { density: 0.2, ..default() };
+    let springs = ClothSprings { structural_stiffness: stiffness, shear_stiffness: stiffness / 10.0, ..default() };
+    app.world_mut().spawn((Mesh3d(mesh), cloth, fabric, springs, pins, Name::new("Sheet"))).id()
 }
 
 fn untethered(solver: ClothSolver, substeps: u32) -> Cloth {
@@ -47,6 +48,17 @@ fn too_few_substeps_of_strands_without_levels_are_told_too() {
     let cloth = Cloth { levels: Some(Vec::new()), ..untethered(STRANDS, 1) };
     let text = warning(cloth, Pins::edge_corners(ClothEdge::Top), 5000.0).expect("a warning");
     assert!(text.contains("1 substep is too few for 5000 N/m") && text.contains("tethers"), "{text}");
+}
+
+#[test]
+fn of_a_fabric_it_is_told_by_what_is_in_force_there() {
+    let mut app = app();
+    let cloth = hang(&mut app, untethered(XPBD, 2), Pins::edge(ClothEdge::Top), 5000.0);
+    app.world_mut().entity_mut(cloth).remove::<ClothSprings>();
+    let mut desk = Desk::new(app);
+    desk.frames(210);
+    let text = shown(&desk).expect("a warning");
+    assert!(text.contains("2 substeps are too few for 4000 N/m") && text.contains("lower warp and weft"), "{text}");
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod contact;
 mod convergence;
 mod determinism;
 mod grabs;
+mod grain;
 mod instructions;
 mod lattices;
 mod levels;

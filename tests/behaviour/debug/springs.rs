@@ -121,7 +121,7 @@ fn tethers_are_told_apart_by_whether_they_are_taut() {
     let mut app = inside();
     let view = ClothDebugView { tethers: true, ..default() };
     // As good as without stiffness of its own, it hangs by its tethers.
-    let limp = Fabric { structural_stiffness: 1.0, shear_stiffness: 1.0, ..default() };
+    let limp = ClothSprings { structural_stiffness: 1.0, shear_stiffness: 1.0, ..default() };
     let floating = Cloth { gravity_scale: 0.0, ..default() };
     let cloth = spawn_sheet(&mut app, (Pins::edge(ClothEdge::Top), floating, limp, view));
     run(&mut app, 1);

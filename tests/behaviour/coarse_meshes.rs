@@ -1,0 +1,148 @@
+//! A mesh that is too coarse to show its fabric's folds is told of once.
+
+use std::{
+    io::{self, Write},
+    sync::{Arc, Mutex},
+};
+
+use bevy::{
+    ecs::schedule::{ScheduleLabel, SingleThreadedExecutor},
+    log::{tracing::subscriber, tracing_subscriber::fmt},
+    prelude::*,
+};
+use bevy_drape::prelude::*;
+
+use crate::common::*;
+
+/// A square metre with cells of 50 mm: fine enough for leather, which needs 83 mm, and for nothing softer.
+const COARSE: ClothGrid = ClothGrid { size: Vec2::ONE, particles: UVec2::splat(21), lying: true };
+/// Cells of 20 mm: fine enough for silk, which needs 24.8 mm.
+const FINE: ClothGrid = ClothGrid { size: Vec2::ONE, particles: UVec2::splat(51), lying: true };
+
+/// What is logged on this thread.
+#[derive(Clone, Default)]
+struct Log(Arc<Mutex<Vec<u8>>>);
+
+impl Write for Log {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.lock().expect("no test fails while it writes").write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// An app that works on one thread, and what it has warned of.
+struct Quiet {
+    app: App,
+    log: Log,
+}
+
+impl Quiet {
+    fn new() -> Self {
+        let mut app = headless_with(ClothPlugin::new(Update).single_threaded());
+        for schedule in [PreUpdate.intern(), Update.intern()] {
+            app.edit_schedule(schedule, |schedule| drop(schedule.set_executor(SingleThreadedExecutor::new())));
+        }
+        Self { app, log: Log::default() }
+    }
+
+    /// The warnings of so many frames.
+    fn run(&mut self, frames: usize) -> Vec<String> {
+        let log = self.log.clone();
+        let listener = fmt().with_ansi(false).with_writer(move || log.clone()).finish();
+        subscriber::with_default(listener, || run(&mut self.app, frames));
+        let said = core::mem::take(&mut *self.log.0.lock().expect("no test fails while it writes"));
+        String::from_utf8(said).expect("text").lines().filter(|line| line.contains("WARN")).map(Into::into).collect()
+    }
+
+    /// The warnings while a cloth becomes ready.
+    fn spawn(&mut self, grid: ClothGrid, more: impl Bundle) -> (Entity, Vec<String>) {
+        let cloth = spawn_cloth(&mut self.app, grid, more);
+        let said = self.run(3);
+        assert_eq!(get::<ClothStatus>(&self.app, cloth), &ClothStatus::Ready);
+        (cloth, said)
+    }
+}
+
+#[test]
+fn the_warning_names_the_cloth_and_both_lengths() {
+    let mut quiet = Quiet::new();
+    let (cloth, said) = quiet.spawn(COARSE, Fabric::SILK);
+    assert_eq!(said.len(), 1, "{said:?}");
+    let parts =
+        [&format!("cloth {cloth} has edges of 50.0 mm"), "24.8 mm at most", "finer", "Fabric::bending_rigidity"];
+    assert!(parts.iter().all(|part| said[0].contains(part)), "{said:?}");
+    assert_eq!(quiet.run(60), Vec::<String>::new(), "once");
+}
+
+#[test]
+fn the_scale_of_the_entity_counts() {
+    let mut quiet = Quiet::new();
+    let small = Transform::from_scale(Vec3::splat(0.4));
+    assert_eq!(quiet.spawn(COARSE, (Fabric::SILK, small)).1, Vec::<String>::new());
+    let large = Transform::from_scale(Vec3::splat(2.0));
+    assert!(quiet.spawn(FINE, (Fabric::SILK, large)).1[0].contains("edges of 40.0 mm"));
+}
+
+#[test]
+fn a_mesh_that_is_fine_enough_is_not_told_of() {
+    let mut quiet = Quiet::new();
+    assert_eq!(quiet.spawn(FINE, Fabric::SILK).1, Vec::<String>::new());
+    assert_eq!(quiet.spawn(COARSE, Fabric::LEATHER).1, Vec::<String>::new());
+    let limp = Fabric { bending_rigidity: 0.0, ..default() };
+    assert_eq!(quiet.spawn(FINE, limp).1, Vec::<String>::new(), "no mesh is fine enough");
+}
+
+#[test]
+fn plain_springs_are_not_told_of_until_they_go() {
+    let mut quiet = Quiet::new();
+    let (cloth, said) = quiet.spawn(COARSE, (Fabric::SILK, ClothSprings::default()));
+    assert_eq!(said, Vec::<String>::new());
+    get_mut::<ClothSprings>(&mut quiet.app, cloth).bend_stiffness = 1.0;
+    *get_mut::<Fabric>(&mut quiet.app, cloth) = Fabric::DENIM;
+    assert_eq!(quiet.run(3), Vec::<String>::new());
+    quiet.app.world_mut().entity_mut(cloth).remove::<ClothSprings>();
+    assert!(quiet.run(3)[0].contains("edges of 50.0 mm in the mean, and its fabric needs them to be 43.4 mm"));
+}
+
+#[test]
+fn a_fabric_that_is_changed_is_told_of_once_however_often() {
+    let mut quiet = Quiet::new();
+    let (cloth, said) = quiet.spawn(COARSE, Fabric::LEATHER);
+    assert_eq!(said, Vec::<String>::new());
+    let mut said = Vec::new();
+    for frame in 0..200 {
+        // To and fro, as a slider is moved: from where 50 mm are enough to where they aren't.
+        let share = (frame % 40_i32 - 20).abs() as f32 / 20.0;
+        get_mut::<Fabric>(&mut quiet.app, cloth).bending_rigidity = 1e-4 + 1e-3 * share;
+        said.extend(quiet.run(1));
+    }
+    assert_eq!(said.len(), 1, "{said:?}");
+    *get_mut::<Fabric>(&mut quiet.app, cloth) = Fabric::SILK;
+    quiet.run(1);
+    for fabric in [Fabric::LEATHER, Fabric::SILK, Fabric::DENIM, Fabric::SILK] {
+        *get_mut::<Fabric>(&mut quiet.app, cloth) = fabric;
+        assert_eq!(quiet.run(2), Vec::<String>::new(), "told of before");
+    }
+}
+
+#[test]
+fn a_fabric_that_the_mesh_is_much_too_coarse_for_is_told_of_after_one_that_it_was_a_little_too_coarse_for() {
+    let mut quiet = Quiet::new();
+    assert_eq!(quiet.spawn(COARSE, Fabric::COTTON_WOVEN).1.len(), 1);
+    let cloth = quiet.app.world_mut().query_filtered::<Entity, With<Cloth>>().single(quiet.app.world()).expect("one");
+    *get_mut::<Fabric>(&mut quiet.app, cloth) = Fabric { bending_rigidity: 1e-6, ..Fabric::SILK };
+    assert_eq!(quiet.run(5).len(), 1);
+}
+
+#[test]
+fn a_mesh_that_comes_late_is_told_of_when_it_comes() {
+    let mut quiet = Quiet::new();
+    let mesh = quiet.app.world().resource::<Assets<Mesh>>().reserve_handle();
+    quiet.app.world_mut().spawn((Mesh3d(mesh.clone()), Cloth::default(), Fabric::SILK));
+    assert_eq!(quiet.run(5), Vec::<String>::new());
+    quiet.app.world_mut().resource_mut::<Assets<Mesh>>().insert(mesh.id(), COARSE.into()).expect("a reserved handle");
+    assert_eq!(quiet.run(5).len(), 1);
+}
