@@ -23,6 +23,7 @@ mod measure;
 mod mesh;
 mod oracle;
 mod pins;
+mod report;
 mod scene;
 mod shares;
 mod sizes;
@@ -108,6 +109,9 @@ enum Experiment {
         /// The few small cases of the tests
         #[arg(long)]
         brief: bool,
+        /// All of them, with tables for the places that this document has for them, and plots beside it
+        #[arg(long, value_name = "FILE.md", conflicts_with_all = ["names", "brief"])]
+        report: Option<PathBuf>,
     },
     /// The same cloth falls on a sphere over a ground
     Drape {
@@ -253,7 +257,8 @@ fn run(Cli { sweep, experiment }: Cli) -> io::Result<()> {
     match experiment {
         _ if sweep => sweep::run(),
         Some(Experiment::Sizes { n }) => sizes::run(&n),
-        Some(Experiment::Laboratory { names, brief }) => {
+        Some(Experiment::Laboratory { report: Some(document), .. }) => report::write(&document),
+        Some(Experiment::Laboratory { names, brief, report: None }) => {
             run_laboratory(&names, brief);
             Ok(())
         }

@@ -7,7 +7,7 @@ use bevy::{
 use bevy_drape::{
     build,
     prelude::Fabric,
-    solver::{Anchor, Effort, Material, Method, Obstacle, Particles, Scratch, StepContext, Topology, step},
+    solver::{Anchor, Effort, Material, Method, Obstacle, Particles, Scratch, StepContext, Tethers, Topology, step},
 };
 
 use super::record::{Case, Rest};
@@ -18,14 +18,8 @@ pub const GRAVITY: f32 = 9.81;
 /// Duration of a step, s.
 pub const FRAME: f32 = 1.0 / 60.0;
 
-/// Below this speed (m/s) a cloth counts as at rest.
-const SLOW: f32 = 5e-4;
-
-/// The same for the explicit solver: with its many small steps, rounding alone shakes particles as fast, by micrometres.
-const SLOW_EXPLICIT: f32 = 0.05;
-
-/// For so many steps it has to be slow: at a turning point everything is.
-const SLOW_STEPS: u32 = 15;
+/// s.
+const A_WHILE: f32 = 0.25;
 
 /// A cloth and all that acts on it.
 #[derive(Clone)]
@@ -41,6 +35,10 @@ pub struct Bed {
     pub fluid_density: f32,
     /// Duration of a step, s.
     pub dt: f32,
+    pub tethers: Option<Tethers>,
+    /// Below this speed (m/s) it counts as at rest: the mean velocity of the fastest particle over [`A_WHILE`]. In f32 and in
+    /// small substeps, rounding shakes particles faster than that without moving them.
+    pub slow: f32,
     pub scratch: Scratch,
 }
 
@@ -66,6 +64,8 @@ impl Bed {
             gravity: Vec3A::NEG_Y * GRAVITY,
             fluid_density: 0.0,
             dt: FRAME,
+            tethers: None,
+            slow: 1e-4,
             scratch: Scratch::default(),
         }
     }
@@ -84,6 +84,13 @@ impl Bed {
             self.particles.inverse_mass[particle] = 0.0;
             self.anchors.push(Anchor { particle: particle as u32, start: place, end: place });
         }
+        self
+    }
+
+    /// Ties all particles to those that are fixed, as a game does.
+    pub fn tethered(mut self) -> Self {
+        let pins: Vec<u32> = self.anchors.iter().map(|anchor| anchor.particle).collect();
+        self.tethers = Some(build::tethers(&self.topology, &pins));
         self
     }
 
@@ -106,8 +113,8 @@ impl Bed {
             anchors: &self.anchors,
             grabs: &[],
             max_velocity: 100.0,
-            tethers: None,
-            tether_slack: 0.0,
+            tethers: self.tethers.as_ref(),
+            tether_slack: 0.005,
             margin: 0.0,
             obstacles: &self.obstacles,
             fluid_density: self.fluid_density,
@@ -124,25 +131,27 @@ impl Bed {
         }
     }
 
+    /// Steps for about so long with velocities that are damped by `damping`, 1/s.
+    pub fn run_damped(&mut self, damping: f32, seconds: f32) {
+        let before = core::mem::replace(&mut self.material.damping, damping);
+        self.run(seconds);
+        self.material.damping = before;
+    }
+
     /// Damps the velocities by `damping` (1/s) and steps until the cloth is at rest, `longest` seconds at most.
     pub fn settle(&mut self, damping: f32, longest: f32) -> Rest {
-        let before = core::mem::replace(&mut self.material.damping, damping);
-        let most = if self.method == Method::Explicit { SLOW_EXPLICIT } else { SLOW };
-        let mut slow = 0;
-        for _ in 0..(longest / self.dt).round() as u32 {
-            self.step();
-            slow = if self.fastest() < most { slow + 1 } else { 0 };
-            if slow == SLOW_STEPS {
+        let while_steps = (A_WHILE / self.dt).round();
+        let mut fastest = f32::INFINITY;
+        for _ in 0..(longest / A_WHILE).ceil() as u32 {
+            let start = self.particles.position.clone();
+            self.run_damped(damping, A_WHILE);
+            let ways = self.particles.position.iter().zip(&start).map(|(p, q)| p.distance(*q));
+            fastest = ways.fold(0.0, f32::max) / (while_steps * self.dt);
+            if fastest < self.slow {
                 break;
             }
         }
-        self.material.damping = before;
-        Rest { fastest: self.fastest().into(), is_reached: slow == SLOW_STEPS }
-    }
-
-    /// Speed of the fastest particle, m/s.
-    pub fn fastest(&self) -> f32 {
-        self.particles.velocity.iter().map(|v| v.length()).fold(0.0, f32::max)
+        Rest { fastest: fastest.into(), is_reached: fastest < self.slow }
     }
 
     /// Mass of a particle, kg; that of its part of the cloth where it is fixed.

@@ -26,7 +26,7 @@ const ALONG_THREADS: f64 = 0.05;
 const ELSEWHERE: f64 = 0.10;
 
 pub fn run(extent: Extent) -> Outcome {
-    let mut outcome = Outcome { measurements: vec![oracle(), rule()], ..Outcome::default() };
+    let mut outcome = Outcome { measurements: vec![oracle(), rule()], curves: vec![profile()] };
     let cotton = ("cotton_woven", Fabric::COTTON_WOVEN);
     let grid = [("warp", Kind::Grid), ("weft", Kind::Grid)];
     let other = [("45°", Kind::Bias), ("warp", Kind::Delaunay), ("weft", Kind::Delaunay), ("45°", Kind::Delaunay)];
@@ -71,6 +71,19 @@ fn rule() -> Measurement {
     Measurement::new(NAME, quantity, case, measured, elastica::peirce(PLANE).recip()).within(0.02)
 }
 
+/// The elastica at 41.5°.
+fn profile() -> Curve {
+    let elastica = Elastica::with_chord(PLANE);
+    let points = elastica
+        .profile()
+        .map(|[along, depth]| [along, -depth])
+        .enumerate()
+        .filter(|(i, _)| i % 40 == 0)
+        .map(|(_, point)| point)
+        .collect();
+    Curve { plot: NAME, series: "numeric elastica".into(), is_expected: true, points, ..Curve::default() }
+}
+
 fn hang(
     outcome: &mut Outcome,
     (name, fabric): &(&'static str, Fabric),
@@ -113,5 +126,6 @@ fn curve(bed: &Bed, strip: &Strip, case: &Case, bending_length: f64) -> Option<C
         .map(|p| [(strip.along(p) - 0.5 * strip.cell) / bending_length, f64::from(p.y) / bending_length])
         .collect();
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    Some(Curve { plot: NAME, series: format!("{}, {}", case.mesh, case.direction), is_expected: false, points })
+    let series = format!("{}, {}", case.mesh, case.direction);
+    Some(Curve { plot: NAME, series, is_expected: false, points, ..Curve::default() })
 }

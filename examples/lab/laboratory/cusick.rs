@@ -53,10 +53,11 @@ pub fn run(extent: Extent) -> Outcome {
     let mut found: Vec<(f64, f64)> = Vec::new();
     let kinds = if extent == Extent::Brief { &[Kind::Grid][..] } else { &[Kind::Grid, Kind::Delaunay] };
     for &kind in kinds {
-        let mut points = Vec::new();
+        let (mut names, mut points) = (Vec::new(), Vec::new());
         for (i, (name, fabric)) in by_bending_length().into_iter().enumerate() {
             let case = Case { fabric: name, mesh: kind.name(), n: edges, substeps: Some(8), ..Case::default() };
             let line = coefficient(&fabric, kind, case);
+            names.push(name);
             points.push([i as f64, line.measured]);
             if kind == Kind::Grid {
                 found.push((bending_length(&fabric), line.measured));
@@ -67,7 +68,7 @@ pub fn run(extent: Extent) -> Outcome {
                 None => line,
             });
         }
-        outcome.curves.push(Curve { plot: NAME, series: kind.name().into(), is_expected: false, points });
+        outcome.curves.push(Curve { plot: NAME, series: kind.name().into(), is_expected: false, points, names });
     }
     outcome.measurements.push(order(&found, edges));
     if extent == Extent::Full {
@@ -113,14 +114,17 @@ fn converge(outcome: &mut Outcome) {
             let line = Measurement { quantity: format!("drape coefficient, %, against {what}"), ..line };
             Measurement { expected: Some(expected), ..line.of(expected).within(CONVERGED) }
         };
-        let eight = of(EDGES, 8);
+        let [eight, sixteen] = [8, 16].map(|substeps| of(EDGES, substeps));
+        let coarse = of(EDGES / 2, 8);
         let finer = format!("{} edges", 2 * EDGES);
         outcome.measurements.push(against(eight.clone(), &finest, &finer));
         outcome.measurements.push(against(eight.clone(), &most, "32 substeps"));
-        outcome.measurements.push(against(of(EDGES, 16), &most, "32 substeps"));
-        let points = [of(EDGES / 2, 8), eight, finest].map(|line| [f64::from(line.case.n), line.measured]);
-        let plot = "cusick-resolution";
-        outcome.curves.push(Curve { plot, series: name.into(), is_expected: false, points: points.into() });
+        outcome.measurements.push(against(sixteen.clone(), &most, "32 substeps"));
+        let curve = |plot, points| Curve { plot, series: name.into(), is_expected: false, points, ..Curve::default() };
+        let edges = [&coarse, &eight, &finest].map(|line| [f64::from(line.case.n), line.measured]);
+        outcome.curves.push(curve("cusick-resolution", edges.into()));
+        let substeps = [(8.0, &eight), (16.0, &sixteen), (32.0, &most)].map(|(n, line)| [n, line.measured]);
+        outcome.curves.push(curve("cusick-substeps", substeps.into()));
     }
 }
 

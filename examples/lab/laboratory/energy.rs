@@ -9,7 +9,7 @@ use bevy_drape::{
 use super::{
     Extent,
     bed::{Bed, GRAVITY, bare},
-    record::{Case, Curve, Measurement, Outcome, name_of},
+    record::{Case, Curve, Measurement, Outcome},
 };
 
 const NAME: &str = "energy";
@@ -50,10 +50,15 @@ pub fn run(_: Extent) -> Outcome {
             Some(_) => loss,
         });
         outcome.measurements.push(of_all("most above the start in 10 s, share", most).within(GAIN));
-        let series = substeps.map_or(name_of(method).into(), |n| format!("{}, {n} substeps", name_of(method)));
-        let times = (0..).map(|frame| f64::from(frame) / 60.0);
-        let points = times.zip(&energies).map(|(time, &energy)| [time, 100.0 * (1.0 + share(energy))]).collect();
-        outcome.curves.push(Curve { plot: NAME, series, is_expected: false, points });
+        let points = energies.iter().enumerate().step_by(6);
+        let points = points.map(|(step, &energy)| [step as f64 / 60.0, 100.0 * (1.0 + share(energy))]).collect();
+        outcome.curves.push(Curve {
+            plot: NAME,
+            series: case.effort(),
+            is_expected: false,
+            points,
+            ..Curve::default()
+        });
     }
     outcome
 }

@@ -4,6 +4,8 @@
 //! What is expected comes from formulas and from small numeric solutions of their own, never from the solver. Where an
 //! experiment needs rest, the velocities are damped, which moves no place of rest, until the fastest particle is slow.
 
+use bevy_drape::solver::Method;
+
 mod bed;
 mod cantilever;
 mod catenary;
@@ -11,7 +13,7 @@ mod cusick;
 mod elastica;
 mod energy;
 mod fall;
-mod mesh;
+pub mod mesh;
 mod pendulum;
 mod pull;
 mod rates;
@@ -22,7 +24,6 @@ mod shear;
 mod slope;
 mod terminal_speed;
 
-pub use mesh::poisson;
 pub use record::{Curve, Measurement, Outcome};
 
 /// How much of an experiment is made.
@@ -33,6 +34,20 @@ pub enum Extent {
     /// All.
     Full,
 }
+
+/// Ways to integrate, and substeps where the method doesn't find them. What is held by springs that are solved one after the
+/// other is softer than its springs where substeps are few: the more of them, the less.
+const EFFORTS: [(Method, Option<u32>); 6] = [
+    (Method::Strands, Some(8)),
+    (Method::Strands, Some(32)),
+    (Method::Strands, Some(128)),
+    (Method::Xpbd, Some(8)),
+    (Method::Xpbd, Some(128)),
+    (Method::Explicit, None),
+];
+
+/// Those of the tests.
+const BRIEF: [(Method, Option<u32>); 2] = [(Method::Strands, Some(8)), (Method::Explicit, None)];
 
 /// A kind of measurement.
 pub struct Experiment {

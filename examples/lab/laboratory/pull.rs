@@ -8,7 +8,7 @@ use bevy::math::Vec3A;
 use bevy_drape::{prelude::Fabric, solver::Method};
 
 use super::{
-    Extent,
+    BRIEF, EFFORTS, Extent,
     bed::{Bed, GRAVITY, bare},
     mesh::{Kind, Strip},
     record::{Case, Curve, Measurement, Outcome},
@@ -34,36 +34,40 @@ const LARGE: [f64; 5] = [0.02, 0.05, 0.1, 0.15, 0.2];
 pub fn run(extent: Extent) -> Outcome {
     let mut outcome = Outcome::default();
     let fabrics = ["cotton_woven", "denim", "cotton_jersey"];
-    let methods = match extent {
-        Extent::Brief => &[(Method::Strands, Some(8))][..],
-        Extent::Full => &[(Method::Strands, Some(8)), (Method::Xpbd, Some(8)), (Method::Explicit, None)],
-    };
+    let efforts = if extent == Extent::Brief { &BRIEF[..] } else { &EFFORTS };
     for (name, fabric) in Fabric::PRESETS.into_iter().filter(|(name, _)| fabrics.contains(name)) {
-        for &(method, substeps) in methods {
-            for (kind, direction) in [Kind::Grid, Kind::Delaunay].into_iter().flat_map(|k| [(k, "warp"), (k, "weft")]) {
+        for kind in [Kind::Grid, Kind::Delaunay] {
+            for (&(method, substeps), direction) in efforts.iter().flat_map(|e| [(e, "warp"), (e, "weft")]) {
                 let case = Case { fabric: name, mesh: kind.name(), n: 16, substeps, direction, method };
                 let strip = Strip { kind, cells: case.n, cell: 0.01, cells_across: 8, direction };
-                let law = Law::of(&fabric, direction);
-                let stiffens = law.stiffening > 0.0 && method == Method::Strands;
-                let large = if stiffens { &LARGE[..] } else { &[] };
-                let mut points = vec![[0.0, 0.0]];
-                for &strain in [SMALL].iter().chain(large) {
-                    let measured = pull(&mut outcome, &fabric, &strip, &case, &law, strain);
-                    points.push([100.0 * measured, law.tension(strain)]);
-                }
-                if stiffens {
-                    let of_law = (0..=40).map(|i| f64::from(i) / 200.0).map(|e| [100.0 * e, law.tension(e)]).collect();
-                    let of_mesh = format!("{direction}, {}", kind.name());
-                    outcome.curves.push(Curve { plot: NAME, series: of_mesh, is_expected: false, points });
-                    if kind == Kind::Grid {
-                        let series = format!("{direction}, as measured by Wang et al.");
-                        outcome.curves.push(Curve { plot: NAME, series, is_expected: true, points: of_law });
-                    }
-                }
+                series(&mut outcome, &fabric, &strip, &case);
             }
         }
     }
     outcome
+}
+
+/// Pulls a little, and ever harder what stiffens.
+fn series(outcome: &mut Outcome, fabric: &Fabric, strip: &Strip, case: &Case) {
+    let law = Law::of(fabric, strip.direction);
+    if law.stiffening == 0.0 {
+        pull(outcome, fabric, strip, case, &law, SMALL);
+        return;
+    }
+    let mut points = vec![[0.0, 0.0]];
+    for strain in [SMALL].into_iter().chain(LARGE) {
+        let measured = pull(outcome, fabric, strip, case, &law, strain);
+        points.push([100.0 * measured, law.tension(strain)]);
+    }
+    let curve = |series, is_expected, points| Curve { plot: NAME, series, is_expected, points, ..Curve::default() };
+    let (direction, effort) = (strip.direction, case.effort());
+    if case.method == Method::Explicit {
+        let of_law = (0..=40).map(|i| f64::from(i) / 200.0).map(|e| [100.0 * e, law.tension(e)]).collect();
+        outcome.curves.push(curve(format!("{direction}, as measured by Wang et al."), true, of_law));
+    }
+    if strip.kind == Kind::Grid && [None, Some(8)].contains(&case.substeps) && case.method != Method::Xpbd {
+        outcome.curves.push(curve(format!("{direction}, {effort}"), false, points));
+    }
 }
 
 /// What a strip takes: k (ε + s ε² / 2), which is k (1 + s ε) for any more.

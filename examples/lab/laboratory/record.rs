@@ -29,6 +29,17 @@ pub struct Case {
     pub method: Method,
 }
 
+impl Case {
+    /// The method and its substeps.
+    pub fn effort(&self) -> String {
+        let name = format!("{:?}", self.method).to_lowercase();
+        match self.substeps {
+            Some(substeps) => format!("{name}, {substeps} substeps"),
+            None => name,
+        }
+    }
+}
+
 /// A measured number beside what it should be.
 #[derive(Clone, Debug)]
 pub struct Measurement {
@@ -53,7 +64,7 @@ pub struct Measurement {
 }
 
 /// Points of a plot.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Curve {
     /// The plot.
     pub plot: &'static str,
@@ -63,6 +74,8 @@ pub struct Curve {
     pub is_expected: bool,
     /// Along both axes.
     pub points: Vec<[f64; 2]>,
+    /// What stands along the first axis in place of 0, 1 and so on.
+    pub names: Vec<&'static str>,
 }
 
 impl Measurement {
@@ -124,7 +137,7 @@ impl Measurement {
             "n": (n > 0).then_some(n),
             "substeps": substeps,
             "direction": named(direction),
-            "method": name_of(method),
+            "method": format!("{method:?}").to_lowercase(),
             "expected": self.expected,
             "measured": self.measured,
             "error_rel": self.error(),
@@ -142,13 +155,4 @@ pub struct Rest {
     pub fastest: f64,
     /// Whether it was slow enough.
     pub is_reached: bool,
-}
-
-/// The name of a method in lines and tables.
-pub fn name_of(method: Method) -> &'static str {
-    match method {
-        Method::Strands => "strands",
-        Method::Xpbd => "xpbd",
-        Method::Explicit => "explicit",
-    }
 }

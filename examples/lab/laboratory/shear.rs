@@ -4,10 +4,10 @@
 //! particle of a side also has the mass that Earth pulls so hard at.
 
 use bevy::math::{DMat2, DVec2, Vec3A};
-use bevy_drape::{prelude::Fabric, solver::Method};
+use bevy_drape::prelude::Fabric;
 
 use super::{
-    Extent,
+    BRIEF, EFFORTS, Extent,
     bed::{Bed, GRAVITY, bare},
     mesh::{Kind, Strip},
     record::{Case, Measurement, Outcome},
@@ -21,13 +21,10 @@ const ANGLE: f64 = core::f64::consts::PI / 180.0;
 pub fn run(extent: Extent) -> Outcome {
     let fabrics = ["cotton_woven", "denim", "cotton_jersey", "silk", "leather"];
     let fabrics = if extent == Extent::Brief { &fabrics[..3] } else { &fabrics };
-    let methods = match extent {
-        Extent::Brief => &[(Method::Strands, Some(8))][..],
-        Extent::Full => &[(Method::Strands, Some(8)), (Method::Xpbd, Some(8)), (Method::Explicit, None)],
-    };
+    let efforts = if extent == Extent::Brief { &BRIEF[..] } else { &EFFORTS };
     let mut measurements = Vec::new();
     for (name, fabric) in Fabric::PRESETS.into_iter().filter(|(name, _)| fabrics.contains(name)) {
-        for &(method, substeps) in methods {
+        for &(method, substeps) in efforts {
             for kind in [Kind::Grid, Kind::Delaunay] {
                 let case = Case { fabric: name, mesh: kind.name(), n: 12, substeps, method, ..Case::default() };
                 measurements.push(shear(kind, &fabric, case));

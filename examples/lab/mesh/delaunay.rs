@@ -6,7 +6,7 @@
 use bevy::math::DVec2;
 
 use super::Sheet;
-use crate::laboratory::poisson;
+use crate::laboratory::mesh::poisson;
 
 /// About `n` x `n` vertices, the border first, then in the order of sampling: neighbours in the cloth are strewn over
 /// memory as in no other mesh here.
