@@ -14,20 +14,23 @@ use bevy_drape::{
     prelude::Fabric,
     solver::{Effort, LevelPass, Topology},
 };
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
 use serde_json::Value;
 
 mod app;
+mod laboratory;
 mod measure;
 mod mesh;
 mod oracle;
 mod pins;
+mod report;
 mod scene;
 mod shares;
 mod sizes;
 mod sweep;
 mod threads;
 
+use laboratory::{EXPERIMENTS, Extent};
 use mesh::MeshSource;
 use oracle::Oracle;
 
@@ -97,6 +100,18 @@ enum Experiment {
     Shares {
         #[command(flatten)]
         options: Options,
+    },
+    /// Experiments whose answers are on paper: a line for each measurement
+    Laboratory {
+        /// Only these of them
+        #[arg(value_parser = laboratory_name())]
+        names: Vec<String>,
+        /// The few small cases of the tests
+        #[arg(long)]
+        brief: bool,
+        /// All of them, with tables for the places that this document has for them, and plots beside it
+        #[arg(long, value_name = "FILE.md", conflicts_with_all = ["names", "brief"])]
+        report: Option<PathBuf>,
     },
     /// The same cloth falls on a sphere over a ground
     Drape {
@@ -242,8 +257,28 @@ fn run(Cli { sweep, experiment }: Cli) -> io::Result<()> {
     match experiment {
         _ if sweep => sweep::run(),
         Some(Experiment::Sizes { n }) => sizes::run(&n),
+        Some(Experiment::Laboratory { report: Some(document), .. }) => report::write(&document),
+        Some(Experiment::Laboratory { names, brief, report: None }) => {
+            run_laboratory(&names, brief);
+            Ok(())
+        }
         Some(experiment) => experiment.measure().map(|line| println!("{line}")),
         None => Ok(()),
+    }
+}
+
+fn laboratory_name() -> PossibleValuesParser {
+    EXPERIMENTS.iter().map(|experiment| experiment.name).collect::<Vec<_>>().into()
+}
+
+/// Makes the experiments of these names, or all.
+fn run_laboratory(names: &[String], brief: bool) {
+    let extent = if brief { Extent::Brief } else { Extent::Full };
+    let is_asked_for = |name: &str| names.is_empty() || names.iter().any(|other| other == name);
+    for experiment in EXPERIMENTS.iter().filter(|experiment| is_asked_for(experiment.name)) {
+        for measurement in (experiment.run)(extent).measurements {
+            println!("{}", measurement.json());
+        }
     }
 }
 
@@ -272,7 +307,7 @@ impl Experiment {
             Self::App { options } => app::one_cloth(options),
             Self::Build { options } => Ok(app::building(options)),
             Self::Many { cloths, frames, single_threaded } => Ok(app::many_flags(*cloths, *frames, *single_threaded)),
-            Self::Sizes { .. } => Err(io::Error::other("sizes are several measurements")),
+            Self::Sizes { .. } | Self::Laboratory { .. } => Err(io::Error::other("these are several measurements")),
         }
     }
 }
