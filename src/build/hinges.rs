@@ -17,7 +17,10 @@
 
 use bevy::{math::ops, prelude::*};
 
-use super::edges::{Edges, HalfEdge};
+use super::{
+    edges::{Edges, HalfEdge},
+    plate::FLAT,
+};
 use crate::solver::Bend;
 
 /// Directions of the test bends, degrees from the warp. Their mean is that of all directions, for energies that are of
@@ -27,9 +30,6 @@ const DIRECTIONS: [f32; 4] = [0.0, 45.0, 90.0, 135.0];
 /// Bends over edges whose particles would be moved so many times as fast as is usual are weakened: they are next to
 /// slivers, and what is as stiff as the stiffest bend decides how costly all of them are.
 const OUTLIER: f32 = 3.0;
-
-/// A sum at rest below this is a flat place and rounding, no unit: about the angle between two triangles.
-const FLAT: f32 = 1e-3;
 
 /// Two triangles, unfolded into a plane: along the edge, and across it.
 struct Hinge {

@@ -228,7 +228,8 @@ pub(super) fn weave(rest: &[Vec3], rectangle: &Rectangle, springs: &[(SpringKind
         };
         Link { rest, shares, weights }
     };
-    (Lattice::new(rows, columns, closed, grain, link), woven)
+    let curl = plate.curl().map(Box::new);
+    (Lattice { curl, ..Lattice::new(rows, columns, closed, grain, link) }, woven)
 }
 
 /// The direction that columns are along, rather than the other.

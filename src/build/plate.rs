@@ -11,7 +11,14 @@
 use bevy::prelude::*;
 
 use super::lattice::Rectangle;
-use crate::solver::Bend;
+use crate::solver::{
+    Bend,
+    lattice::Curl,
+    simd::{LANES, Lane},
+};
+
+/// A bend at rest of less than this angle is a flat place and rounding, rad.
+pub(super) const FLAT: f32 = 1e-3;
 
 /// Where two weights stand in a [`Bend`] along a thread: of the particle before and of that after.
 pub(super) const ENDS: [usize; 2] = [0, 1];
@@ -60,11 +67,8 @@ impl<'a> Plate<'a> {
     pub fn twist(&self, at: (usize, usize)) -> Option<Bend> {
         let corners = self.cell(at)?;
         let weight = (2.0 / self.area(at)).sqrt();
-        weight.is_finite().then(|| Bend {
-            particles: [corners[0], corners[2], corners[1], corners[3]].map(|at| self.particle(at)),
-            weights: [weight, weight, -weight, -weight],
-            ..Bend::default()
-        })
+        let particles = [corners[0], corners[2], corners[1], corners[3]];
+        weight.is_finite().then(|| self.bend(particles, [weight, weight, -weight, -weight]))
     }
 
     fn along(&self, thread: [(usize, usize); 3], side: (usize, usize)) -> Option<Bend> {
@@ -72,11 +76,47 @@ impl<'a> Plate<'a> {
         let (a, b) = (before.distance(here), here.distance(after));
         let area = self.area_around(thread[1]).sqrt();
         let [p, q] = [a, b].map(|side| 2.0 * area / ((a + b) * side));
-        (p.is_finite() && q.is_finite()).then(|| Bend {
-            particles: [thread[0], thread[2], thread[1], side].map(|at| self.particle(at)),
-            weights: [p, q, -(p + q), 0.0],
-            ..Bend::default()
-        })
+        let particles = [thread[0], thread[2], thread[1], side];
+        (p.is_finite() && q.is_finite()).then(|| self.bend(particles, [p, q, -(p + q), 0.0]))
+    }
+
+    /// A bend with what it is at rest. Where it is only bent within the cloth, as threads of uneven cells are, stretch sees
+    /// to that.
+    fn bend(&self, particles: [(usize, usize); 4], weights: [f32; 4]) -> Bend {
+        let places = particles.map(|at| self.place(at));
+        let sum: Vec3 = places.iter().zip(weights).map(|(place, weight)| *place * weight).sum();
+        let along = (places[1] - places[0]).normalize_or_zero();
+        let across = (places[3] - places[2]).reject_from(along).normalize_or_zero();
+        let rest = [along, across, along.cross(across)].map(|direction| sum.dot(direction));
+        let rest = if rest[2].abs() < FLAT { [0.0; 3] } else { rest };
+        Bend { particles: particles.map(|at| self.particle(at)), weights, rest }
+    }
+
+    /// What bends are at rest, for the lattice. None where all is flat.
+    pub fn curl(&self) -> Option<Curl> {
+        let of = |find: &dyn Fn((usize, usize)) -> Option<Bend>, is_turned: &dyn Fn((usize, usize)) -> bool| {
+            let at = |(row, column): (usize, usize)| {
+                let is_inside = row < self.rows && column < self.columns;
+                let rest = is_inside.then(|| find((row, column))).flatten().map_or([0.0; 3], |bend| bend.rest);
+                // The lattice looks for a thread's side always after it, where a bend at the border looks before.
+                let [x, y, z] = rest;
+                if is_turned((row, column)) { [x, -y, -z] } else { rest }
+            };
+            let blocks = (0..self.columns).step_by(LANES).flat_map(|first| (0..self.rows).map(move |row| (row, first)));
+            let block = |(row, first): (usize, usize)| {
+                [0, 1, 2].map(|axis| -> Lane { core::array::from_fn(|l| at((row, first + l))[axis]) })
+            };
+            blocks.map(block).collect::<Vec<_>>()
+        };
+        let is_inner = |(_, column): (usize, usize)| column > 0 && column + 1 < self.columns;
+        let curl = Curl {
+            along_rows: of(&|at| self.along_row(at).filter(|_| is_inner(at)), &|(row, _)| row + 1 == self.rows),
+            along_columns: of(&|at| self.along_column(at), &|(_, column)| !self.closed && column + 1 == self.columns),
+            twist: of(&|at| self.twist(at).filter(|_| at.1 + 1 < self.columns), &|_| false),
+        };
+        let all = [&curl.along_rows, &curl.along_columns, &curl.twist];
+        let is_curved = all.into_iter().flatten().any(|block| block.as_flattened().iter().any(|&rest| rest != 0.0));
+        is_curved.then_some(curl)
     }
 
     /// Area that a particle stands for, m²: a quarter of the cells around it.

@@ -40,6 +40,18 @@ pub(super) fn of_bends(bends: &[Bend], areas: &[f32]) -> f32 {
     rate * MARGIN
 }
 
+/// What that is at most, by Gershgorin's circles.
+pub(super) fn bound(bends: &[Bend], areas: &[f32]) -> f32 {
+    let mut sums = vec![0.0; areas.len()];
+    for Bend { particles, weights, .. } in bends {
+        let all: f32 = weights.iter().map(|weight| weight.abs()).sum();
+        for (&i, weight) in particles.iter().zip(weights) {
+            sums[i as usize] += weight.abs() * all;
+        }
+    }
+    sums.iter().zip(areas).map(|(sum, area)| sum / area).fold(0.0, f32::max)
+}
+
 /// Numbers between -1 and 1 without a pattern: the bits of the index, well mixed.
 fn start(i: u32) -> f32 {
     let mixed = i.wrapping_add(1).wrapping_mul(0x9e37_79b9);

@@ -89,7 +89,8 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
         (Some(_), Some(rectangle)) => bends::of_plate(&Plate::new(&rest, rectangle), rest.len()),
         _ => bends::batches(rest.len(), &hinges::find(&rest, &edges, &areas, &triangle_areas, &warp)),
     };
-    let bend_rate = rate::of_bends(&bends, &areas);
+    // Those of a lattice are seldom solved one by one: what takes less time to find is good enough.
+    let bend_rate = if lattice.is_some() { rate::bound(&bends, &areas) } else { rate::of_bends(&bends, &areas) };
     Topology {
         rest,
         springs,

@@ -36,14 +36,18 @@ pub struct Lattice {
     pub curl: Option<Box<Curl>>,
 }
 
-/// What the bends and twists of a lattice are at rest, as it stands in [`Bend::rest`](super::Bend::rest), m.
+/// What the bends and twists of a lattice are at rest, no unit: along the way from the particle before to that after,
+/// across it towards the next row or column, and normal to both. For each eight columns, one entry a row.
+///
+/// Of a twist, along is the way from the cell's first corner to that opposite, and across that between the others, down.
+/// After the last row or column, across is seen as from the one before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curl {
-    /// At each node of the rows: for each eight columns, one entry a row.
+    /// Of the rows, at each particle.
     pub along_rows: Vec<[Lane; 3]>,
-    /// At each node of the columns.
+    /// Of the columns, at each particle.
     pub along_columns: Vec<[Lane; 3]>,
-    /// In each cell.
+    /// Of the cell that begins at each particle.
     pub twist: Vec<[Lane; 3]>,
 }
 

@@ -41,11 +41,17 @@ impl Order {
         self.pack_count() * self.rows
     }
 
-    /// The slot of the particle at a row and column.
-    pub fn slot_at(&self, row: usize, column: usize) -> usize {
+    /// The block of a row in a column of blocks.
+    #[inline]
+    pub fn block_at(&self, row: usize, pack: usize) -> usize {
         let first = row - row % BAND;
         let rows = BAND.min(self.rows - first);
-        (first * self.pack_count() + column / LANES * rows + row - first) * LANES + column % LANES
+        first * self.pack_count() + pack * rows + row - first
+    }
+
+    /// The slot of the particle at a row and column.
+    pub fn slot_at(&self, row: usize, column: usize) -> usize {
+        self.block_at(row, column / LANES) * LANES + column % LANES
     }
 
     /// The slot of a particle.

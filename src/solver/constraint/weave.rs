@@ -303,6 +303,7 @@ pub(in crate::solver) fn prepare_bends(
     instructions: Instructions,
 ) {
     let Yarn::Sheet { rigidity: Some(rigidity), .. } = yarn else { return };
+    plate.rest.turn(lattice, lanes, instructions);
     let (order, level) = (lattice.order(), instructions.level());
     let Threads { nodes, count, curvature: weights, .. } = &lattice.along_columns;
     plate.columns.resize(weights.len(), Factor::default());
@@ -443,7 +444,7 @@ impl ThreadRun<'_> {
 
 /// Turns up to eight blocks into up to eight others: lane i of block j becomes lane j of block i.
 #[inline(always)]
-fn blocks_across<S: Simd>(simd: S, from: &[Block], to: &mut [Block]) {
+pub(super) fn blocks_across<S: Simd>(simd: S, from: &[Block], to: &mut [Block]) {
     for i in 0..3 {
         across(simd, from.iter().map(|block| &block[i]), to.iter_mut().map(|block| &mut block[i]));
     }
