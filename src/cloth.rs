@@ -63,7 +63,8 @@ pub struct Cloth {
     pub max_substeps: u32,
     /// Factor on [`ClothGravity`], no unit. 0 floats, negative rises.
     pub gravity_scale: f32,
-    /// By how much of its length a tether gives, no unit, 0 or more; 0.002 to 0.01 for cloth. `None` for no tethers.
+    /// By how much of its length a tether gives, no unit, 0 or more; 0.002 to 0.01 for cloth. `None` for no tethers. It
+    /// comes on top of what the fabric's own weight stretches it, which shows with knits.
     ///
     /// Tethers keep every particle within the cloth's own length of its pins: the cure for cloth that stretches like
     /// rubber. [`ClothSolver::Explicit`] hasn't them.

@@ -51,7 +51,7 @@ pub struct StepContext<'a> {
     pub max_velocity: f32,
     /// Longest allowed distances to fixed particles. Not for [`Method::Explicit`].
     pub tethers: Option<&'a Tethers>,
-    /// By how much of its length a tether gives, no unit. 0.002 to 0.01.
+    /// By how much of its length a tether gives, no unit, beyond what a sheet itself gives. 0.002 to 0.01.
     pub tether_slack: f32,
     /// Distance that particles keep from obstacles beyond the cloth's thickness, m.
     pub margin: f32,
@@ -66,6 +66,12 @@ pub struct StepContext<'a> {
 }
 
 impl StepContext<'_> {
+    /// By how much of its length a tether gives in all, no unit: a sheet may be stretched by its weight.
+    pub fn slack(&self) -> f32 {
+        let longest = self.tethers.map_or(0.0, Tethers::longest);
+        self.tether_slack + longest * self.material.give(self.gravity.length())
+    }
+
     /// Distance that particles keep from obstacles, m.
     pub fn contact_distance(&self) -> f32 {
         self.material.thickness + self.margin

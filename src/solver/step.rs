@@ -57,7 +57,19 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
     let limit = SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most };
     let h = dt / substeps as f32;
-    let substep = Substep { topology, ctx, h, stiffness_scale, is_pushed, is_near, limit, helpers, last, levels };
+    let substep = Substep {
+        topology,
+        ctx,
+        h,
+        stiffness_scale,
+        is_pushed,
+        is_near,
+        limit,
+        helpers,
+        last,
+        levels,
+        slack: ctx.slack(),
+    };
     let air_interval = ((1.0 / (AIR_RATE * substep.h)) as u32).max(1);
     let mut contacts = 0;
 

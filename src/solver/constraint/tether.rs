@@ -39,6 +39,8 @@ pub struct Tethers {
     blocks: Vec<TetherBlock>,
     /// Tethers of each level's nodes.
     levels: Vec<Vec<TetherBlock>>,
+    /// The longest of all, m.
+    longest: f32,
 }
 
 /// Tethers of the eight particles of a block, one each.
@@ -77,7 +79,13 @@ impl Tethers {
             levels: topology.levels.iter().map(|level| tethers_of_level(level, of)).collect(),
             order,
             pins,
+            longest: tethers.iter().map(|tether| tether.length).fold(0.0, f32::max),
         }
+    }
+
+    /// The longest of those that there were at first, m.
+    pub fn longest(&self) -> f32 {
+        self.longest
     }
 
     /// Drops the tethers to all pins but some.

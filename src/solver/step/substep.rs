@@ -40,6 +40,8 @@ pub(super) struct Substep<'a> {
     pub helpers: Option<(&'a TaskPool, &'a Lattice)>,
     pub last: Last,
     pub levels: &'a [LevelPass],
+    /// By how much of its length a tether gives, no unit.
+    pub slack: f32,
 }
 
 impl Substep<'_> {
@@ -128,7 +130,7 @@ impl Substep<'_> {
                 levels: run.as_ref().map(|run| (run, &*levels)),
                 tethers: self.ctx.tethers.map_or(&[], Tethers::of_cloth),
                 pins,
-                slack: self.ctx.tether_slack,
+                slack: self.slack,
                 finish,
             };
             share::solve(pool, lanes, benches, &work);
@@ -168,10 +170,10 @@ impl Substep<'_> {
     /// Tethers to hands, then those to pins.
     pub fn solve_tethers(&self, scratch: &mut Scratch) {
         let Scratch { lanes, pins, instructions, .. } = scratch;
-        grab::solve_tethers(lanes, self.ctx.grabs, self.ctx.tether_slack);
+        grab::solve_tethers(lanes, self.ctx.grabs, self.slack);
         if let Some(tethers) = self.ctx.tethers {
             let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
-            tether::solve(position, inverse_mass, 0, tethers.of_cloth(), pins, self.ctx.tether_slack, *instructions);
+            tether::solve(position, inverse_mass, 0, tethers.of_cloth(), pins, self.slack, *instructions);
         }
     }
 
@@ -181,7 +183,7 @@ impl Substep<'_> {
             levels: &self.topology.levels,
             passes: self.levels,
             tethers: self.ctx.tethers.filter(|tethers| !tethers.is_empty())?,
-            slack: self.ctx.tether_slack,
+            slack: self.slack,
             stretch: Scaled::new(self.ctx.material.thread_stiffness(), self.h),
             last: self.last,
             instructions: scratch.instructions,
