@@ -110,8 +110,9 @@ fn draw<B: DrawingBackend>(
             continue;
         }
         chart.draw_series(LineSeries::new(places(), colour.mix(0.6)))?;
-        let size = if points.len() > 60 { 1 } else { 4 };
-        let marks = places().map(|place| Circle::new(place, size, colour.filled()));
+        // A curve of many points needs no marks.
+        let marked = if points.len() > 60 { 0 } else { points.len() };
+        let marks = places().take(marked).map(|place| Circle::new(place, 4, colour.filled()));
         let legend = move |(x, y)| Circle::new((x + 10, y), 4, colour.filled());
         chart.draw_series(marks)?.label(series).legend(legend);
     }
