@@ -152,7 +152,8 @@ fn make_cloth_of_model(
     for entity in children.iter_descendants(ready.entity).filter(|&entity| meshes.contains(entity)) {
         commands.entity(entity).insert((
             Cloth { substeps: Some(12), ..default() },
-            Fabric::POLYESTER_TABLECLOTH,
+            // Stiff enough for the model's cells of 5 cm to show its folds.
+            Fabric { bending_rigidity: 60e-6, ..Fabric::POLYESTER_TABLECLOTH },
             Pins::attribute(ATTRIBUTE_PIN),
         ));
     }
