@@ -176,9 +176,9 @@ struct Options {
 }
 
 fn fabric(name: &str) -> Result<Fabric, String> {
-    let known = Fabric::PRESETS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-    let preset = Fabric::PRESETS.into_iter().find(|(preset, _)| *preset == name);
-    preset.map(|(_, fabric)| fabric).ok_or(format!("fabrics are {known}"))
+    let known = Fabric::PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ");
+    let preset = Fabric::PRESETS.into_iter().find(|preset| preset.name == name);
+    preset.map(|preset| preset.fabric).ok_or(format!("fabrics are {known}"))
 }
 
 /// Which coarse levels are used.

@@ -1,6 +1,6 @@
 //! What a textile laboratory would measure, at sizes that take seconds: the experiments are the lab's own.
 
-use laboratory::{EXPERIMENTS, Extent};
+use laboratory::{Curve, EXPERIMENTS, Extent, Measurement, Outcome};
 
 #[path = "../../examples/lab/laboratory/mod.rs"]
 mod laboratory;
@@ -12,17 +12,26 @@ fn assert_on_paper(name: &str) {
 
 fn assert_to(extent: Extent, name: &str) {
     let experiment = EXPERIMENTS.iter().find(|experiment| experiment.name == name).expect("an experiment");
-    let outcome = (experiment.run)(extent);
-    assert!(outcome.measurements.iter().any(|measurement| measurement.is_ok().is_some()));
-    let misses = outcome.measurements.iter().filter(|measurement| measurement.is_ok() == Some(false));
-    let misses: Vec<String> = misses.map(|measurement| measurement.json().to_string()).collect();
+    let Outcome { measurements, curves } = (experiment.run)(extent);
+    assert_within_tolerance(&measurements);
+    assert_drawable(&curves);
+}
+
+fn assert_within_tolerance(measurements: &[Measurement]) {
+    assert!(measurements.iter().any(|measurement| measurement.is_ok().is_some()));
+    let misses = measurements.iter().filter(|measurement| measurement.is_ok() == Some(false));
+    let misses: Vec<String> = misses.map(ToString::to_string).collect();
     assert!(misses.is_empty(), "{misses:#?}");
-    for curve in &outcome.curves {
+    assert!(measurements.iter().all(|measurement| measurement.json()["experiment"].is_string()));
+}
+
+fn assert_drawable(curves: &[Curve]) {
+    for curve in curves {
         let is_finite = curve.points.as_flattened().iter().all(|value| value.is_finite());
         assert!(is_finite && !curve.points.is_empty(), "{}: {}", curve.plot, curve.series);
-        let has_cloth = outcome.curves.iter().any(|other| other.plot == curve.plot && !other.is_expected);
-        assert!(has_cloth, "nothing is compared with {}", curve.series);
         assert!(curve.names.is_empty() || curve.names.len() == curve.points.len());
+        let has_cloth = curves.iter().any(|other| other.plot == curve.plot && !other.is_expected);
+        assert!(has_cloth, "nothing is compared with {}", curve.series);
     }
 }
 

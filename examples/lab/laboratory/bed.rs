@@ -42,6 +42,11 @@ pub struct Bed {
     pub scratch: Scratch,
 }
 
+/// Names and constants of all presets.
+pub fn presets() -> impl Iterator<Item = (&'static str, Fabric)> {
+    Fabric::PRESETS.into_iter().map(|preset| (preset.name, preset.fabric))
+}
+
 /// A fabric in a vacuum that nothing damps.
 pub fn bare(fabric: Fabric) -> Material {
     let bare = Fabric { damping: 0.0, drag: 0.0, lift: 0.0, ..fabric };

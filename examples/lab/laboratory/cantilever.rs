@@ -11,7 +11,7 @@ use bevy_drape::{prelude::Fabric, solver::Method};
 
 use super::{
     Extent,
-    bed::{Bed, GRAVITY, bare},
+    bed::{self, Bed, GRAVITY, bare},
     elastica::{self, Elastica, PLANE},
     mesh::{Kind, Strip},
     record::{Case, Curve, Measurement, Outcome},
@@ -39,14 +39,18 @@ pub fn run(extent: Extent) -> Outcome {
     if extent == Extent::Brief {
         return outcome;
     }
-    for substeps in [4, 32] {
-        hang(&mut outcome, &cotton, Kind::Grid, "warp", 12, Method::Strands, Some(substeps));
+    for (kind, cells, substeps) in [(Kind::Grid, 12, 4), (Kind::Grid, 12, 32), (Kind::Delaunay, 24, 32)] {
+        hang(&mut outcome, &cotton, kind, "warp", cells, Method::Strands, Some(substeps));
     }
-    for (kind, method) in [(Kind::Grid, Method::Xpbd), (Kind::Grid, Method::Explicit), (Kind::Delaunay, Method::Xpbd)] {
+    for (kind, method) in [Kind::Grid, Kind::Bias, Kind::Delaunay]
+        .into_iter()
+        .flat_map(|kind| [(kind, Method::Xpbd), (kind, Method::Explicit)])
+    {
+        let direction = if kind == Kind::Bias { "45°" } else { "warp" };
         let substeps = (method == Method::Xpbd).then_some(8);
-        hang(&mut outcome, &cotton, kind, "warp", 12, method, substeps);
+        hang(&mut outcome, &cotton, kind, direction, 12, method, substeps);
     }
-    for preset in Fabric::PRESETS.into_iter().filter(|preset| preset.0 != "cotton_woven") {
+    for preset in bed::presets().filter(|preset| preset.0 != "cotton_woven") {
         for kind in [Kind::Grid, Kind::Delaunay] {
             hang(&mut outcome, &preset, kind, "warp", 12, Method::Strands, Some(8));
         }

@@ -1,10 +1,10 @@
 //! A strip that hangs from both ends takes the catenary.
 
 use bevy::math::Vec3A;
-use bevy_drape::{prelude::Fabric, solver::Method};
+use bevy_drape::prelude::Fabric;
 
 use super::{
-    Extent,
+    BRIEF, EFFORTS, Extent,
     bed::{Bed, bare},
     mesh::{Kind, Strip},
     record::{Case, Measurement, Outcome},
@@ -17,21 +17,16 @@ const SLACK: f64 = 1.5;
 /// Share of the span that the strip may be off the curve.
 const TOLERANCE: f64 = 0.01;
 
-pub fn run(_: Extent) -> Outcome {
-    let case = |mesh: Kind, direction, method: Method| {
-        let substeps = (method != Method::Explicit).then_some(8);
-        let case = Case { fabric: "cotton_woven, limp", mesh: mesh.name(), n: 30, substeps, direction, method };
-        farthest(mesh, case)
-    };
-    let measurements = [
-        case(Kind::Grid, "warp", Method::Strands),
-        case(Kind::Grid, "weft", Method::Strands),
-        case(Kind::Grid, "warp", Method::Xpbd),
-        case(Kind::Grid, "warp", Method::Explicit),
-        case(Kind::Delaunay, "warp", Method::Strands),
-        case(Kind::Delaunay, "warp", Method::Xpbd),
-    ];
-    Outcome { measurements: measurements.into(), ..Outcome::default() }
+pub fn run(extent: Extent) -> Outcome {
+    let mut measurements = Vec::new();
+    for &(method, substeps) in if extent == Extent::Brief { &BRIEF[..] } else { &EFFORTS } {
+        for (mesh, direction) in [(Kind::Grid, "warp"), (Kind::Grid, "weft"), (Kind::Delaunay, "warp")] {
+            let fabric = "cotton_woven, limp";
+            let case = Case { fabric, mesh: mesh.name(), n: 30, substeps, direction, method };
+            measurements.push(farthest(mesh, case));
+        }
+    }
+    Outcome { measurements, ..Outcome::default() }
 }
 
 /// The farthest that a particle is from where a chain would have it, m.

@@ -11,7 +11,7 @@ use fastrand::Rng;
 
 use super::{
     Extent,
-    bed::{Bed, GRAVITY, bare},
+    bed::{self, Bed, GRAVITY, bare},
     mesh::{self, Kind},
     record::{Case, Curve, Measurement, Outcome},
     shadow,
@@ -84,7 +84,7 @@ fn bending_length(fabric: &Fabric) -> f64 {
 
 /// The presets, the limpest first.
 fn by_bending_length() -> Vec<(&'static str, Fabric)> {
-    let mut presets = Vec::from(Fabric::PRESETS);
+    let mut presets = bed::presets().collect::<Vec<_>>();
     presets.sort_by(|(_, a), (_, b)| bending_length(a).total_cmp(&bending_length(b)));
     presets
 }
@@ -100,15 +100,13 @@ fn order(found: &[(f64, f64)], edges: u32) -> Measurement {
 
 /// The same on coarser and finer meshes and with more substeps, against the finest and the most.
 fn converge(outcome: &mut Outcome) {
-    for (name, fabric) in
-        Fabric::PRESETS.into_iter().filter(|(name, _)| ["cotton_woven", "denim", "leather"].contains(name))
-    {
+    for (name, fabric) in bed::presets().filter(|(name, _)| ["cotton_woven", "denim", "leather"].contains(name)) {
         let of = |n, substeps| {
             let case = Case { fabric: name, mesh: Kind::Grid.name(), n, substeps: Some(substeps), ..Case::default() };
             coefficient(&fabric, Kind::Grid, case)
         };
         let finest = of(2 * EDGES, 8);
-        let most = of(EDGES, 32);
+        let [most, finest_most] = [EDGES, 2 * EDGES].map(|edges| of(edges, 32));
         let against = |line: Measurement, other: &Measurement, what: &str| {
             let expected = other.measured;
             let line = Measurement { quantity: format!("drape coefficient, %, against {what}"), ..line };
@@ -118,13 +116,19 @@ fn converge(outcome: &mut Outcome) {
         let coarse = of(EDGES / 2, 8);
         let finer = format!("{} edges", 2 * EDGES);
         outcome.measurements.push(against(eight.clone(), &finest, &finer));
+        outcome.measurements.push(against(most.clone(), &finest_most, &finer));
         outcome.measurements.push(against(eight.clone(), &most, "32 substeps"));
         outcome.measurements.push(against(sixteen.clone(), &most, "32 substeps"));
-        let curve = |plot, points| Curve { plot, series: name.into(), is_expected: false, points, ..Curve::default() };
+        let curve = |plot, of: &str, points| {
+            let series = format!("{}, {of}", name.replace('_', " "));
+            Curve { plot, series, points, ..Curve::default() }
+        };
         let edges = [&coarse, &eight, &finest].map(|line| [f64::from(line.case.n), line.measured]);
-        outcome.curves.push(curve("cusick-resolution", edges.into()));
+        outcome.curves.push(curve("cusick-resolution", "8 substeps", edges.into()));
+        let edges = [&most, &finest_most].map(|line| [f64::from(line.case.n), line.measured]);
+        outcome.curves.push(curve("cusick-resolution", "32 substeps", edges.into()));
         let substeps = [(8.0, &eight), (16.0, &sixteen), (32.0, &most)].map(|(n, line)| [n, line.measured]);
-        outcome.curves.push(curve("cusick-substeps", substeps.into()));
+        outcome.curves.push(curve("cusick-substeps", "20 edges", substeps.into()));
     }
 }
 

@@ -1,12 +1,9 @@
 //! Small swings of a single cell, which is a pendulum, and of a hanging sheet, which is a heavy chain.
 
-use bevy_drape::{
-    prelude::{ClothGrid, Fabric},
-    solver::Method,
-};
+use bevy_drape::prelude::{ClothGrid, Fabric};
 
 use super::{
-    Extent,
+    BRIEF, EFFORTS, Extent,
     bed::{Bed, GRAVITY, bare},
     record::{Case, Measurement, Outcome},
     roots,
@@ -25,9 +22,9 @@ const LENGTH: f64 = 0.5;
 /// Turning points that are waited for.
 const SWINGS: usize = 10;
 
-pub fn run(_: Extent) -> Outcome {
-    let measurements = [Method::Strands, Method::Xpbd, Method::Explicit].into_iter().flat_map(|method| {
-        let substeps = (method != Method::Explicit).then_some(8);
+pub fn run(extent: Extent) -> Outcome {
+    let efforts = if extent == Extent::Brief { &BRIEF[..] } else { &EFFORTS };
+    let measurements = efforts.iter().flat_map(|&(method, substeps)| {
         let case = |n| Case { fabric: "cotton_woven", mesh: "grid", n, substeps, method, ..Case::default() };
         [cell(case(1)), sheet(case(24))]
     });

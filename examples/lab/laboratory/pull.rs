@@ -9,7 +9,7 @@ use bevy_drape::{prelude::Fabric, solver::Method};
 
 use super::{
     BRIEF, EFFORTS, Extent,
-    bed::{Bed, GRAVITY, bare},
+    bed::{self, Bed, GRAVITY, bare},
     mesh::{Kind, Strip},
     record::{Case, Curve, Measurement, Outcome},
 };
@@ -35,7 +35,7 @@ pub fn run(extent: Extent) -> Outcome {
     let mut outcome = Outcome::default();
     let fabrics = ["cotton_woven", "denim", "cotton_jersey"];
     let efforts = if extent == Extent::Brief { &BRIEF[..] } else { &EFFORTS };
-    for (name, fabric) in Fabric::PRESETS.into_iter().filter(|(name, _)| fabrics.contains(name)) {
+    for (name, fabric) in bed::presets().filter(|(name, _)| fabrics.contains(name)) {
         for kind in [Kind::Grid, Kind::Delaunay] {
             for (&(method, substeps), direction) in efforts.iter().flat_map(|e| [(e, "warp"), (e, "weft")]) {
                 let case = Case { fabric: name, mesh: kind.name(), n: 16, substeps, direction, method };
@@ -61,9 +61,9 @@ fn series(outcome: &mut Outcome, fabric: &Fabric, strip: &Strip, case: &Case) {
     }
     let curve = |series, is_expected, points| Curve { plot: NAME, series, is_expected, points, ..Curve::default() };
     let (direction, effort) = (strip.direction, case.effort());
-    if case.method == Method::Explicit {
+    if case.method == Method::Explicit && strip.kind == Kind::Grid {
         let of_law = (0..=40).map(|i| f64::from(i) / 200.0).map(|e| [100.0 * e, law.tension(e)]).collect();
-        outcome.curves.push(curve(format!("{direction}, as measured by Wang et al."), true, of_law));
+        outcome.curves.push(curve(format!("{direction}, the fabric's law"), true, of_law));
     }
     if strip.kind == Kind::Grid && [None, Some(8)].contains(&case.substeps) && case.method != Method::Xpbd {
         outcome.curves.push(curve(format!("{direction}, {effort}"), false, points));

@@ -1,5 +1,7 @@
 //! What an experiment finds.
 
+use std::fmt;
+
 use bevy_drape::solver::Method;
 use serde_json::{Value, json};
 
@@ -145,6 +147,18 @@ impl Measurement {
             "fastest_m_s": self.fastest,
             "ok": self.is_ok(),
         })
+    }
+}
+
+impl fmt::Display for Measurement {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { quantity, case, measured, .. } = self;
+        write!(f, "{quantity}: {measured:.5}")?;
+        self.expected.map_or(Ok(()), |expected| write!(f, " for {expected:.5}"))?;
+        self.error().map_or(Ok(()), |error| write!(f, ", off by {:.2} %", 100.0 * error))?;
+        self.tolerance.map_or(Ok(()), |tolerance| write!(f, " of {:.2} %", 100.0 * tolerance))?;
+        self.fastest.map_or(Ok(()), |fastest| write!(f, ", still {fastest:.5} m/s"))?;
+        write!(f, " ({}, {}, {} cells, {} {})", case.fabric, case.mesh, case.n, case.direction, case.effort())
     }
 }
 

@@ -8,7 +8,7 @@ use bevy_drape::prelude::Fabric;
 
 use super::{
     BRIEF, EFFORTS, Extent,
-    bed::{Bed, GRAVITY, bare},
+    bed::{self, Bed, GRAVITY, bare},
     mesh::{Kind, Strip},
     record::{Case, Measurement, Outcome},
 };
@@ -23,7 +23,7 @@ pub fn run(extent: Extent) -> Outcome {
     let fabrics = if extent == Extent::Brief { &fabrics[..3] } else { &fabrics };
     let efforts = if extent == Extent::Brief { &BRIEF[..] } else { &EFFORTS };
     let mut measurements = Vec::new();
-    for (name, fabric) in Fabric::PRESETS.into_iter().filter(|(name, _)| fabrics.contains(name)) {
+    for (name, fabric) in bed::presets().filter(|(name, _)| fabrics.contains(name)) {
         for &(method, substeps) in efforts {
             for kind in [Kind::Grid, Kind::Delaunay] {
                 let case = Case { fabric: name, mesh: kind.name(), n: 12, substeps, method, ..Case::default() };

@@ -54,7 +54,7 @@ fn look(name: &str) -> Look {
             "Drape on ever finer meshes",
             "edges along the radius",
             "drape coefficient, %",
-            SeriesLabelPosition::LowerRight,
+            SeriesLabelPosition::LowerLeft,
         ),
         "cusick-substeps" => {
             look("Drape with ever more substeps", "substeps", "drape coefficient, %", SeriesLabelPosition::LowerRight)
@@ -87,16 +87,15 @@ fn draw<B: DrawingBackend>(
         .build_cartesian_2d(span(values(0)), span(values(1)))?;
     let names = curves.first().map_or(&[][..], |curve| &curve.names);
     let x_label = |x: &f64| match names {
-        [] => (*x as f32).to_string(),
+        [] => label(*x),
         names => names.get(x.round() as usize).map_or_else(String::new, |name| name.replace('_', " ")),
     };
     chart
         .configure_mesh()
         .x_desc(look.x)
         .y_desc(look.y)
-        // As f32, or 0.3 would be 0.30000000000000004.
         .x_label_formatter(&x_label)
-        .y_label_formatter(&|y| (*y as f32).to_string())
+        .y_label_formatter(&|y| label(*y))
         .label_style(("sans-serif", 14))
         .light_line_style(TRANSPARENT)
         .draw()?;
@@ -124,6 +123,12 @@ fn draw<B: DrawingBackend>(
         .label_font(("sans-serif", 14))
         .draw()?;
     area.present()
+}
+
+/// Without the dust of f64: 0.3 instead of 0.30000000000000004, and zero.
+fn label(value: f64) -> String {
+    // Minus zero plus zero is zero.
+    ((value * 1e6).round() / 1e6 + 0.0).to_string()
 }
 
 /// All of `values`, with some room at both ends.
