@@ -99,13 +99,20 @@ impl Yarn {
         }
     }
 
+    /// Whether it needs to know where the particles were before the substep.
     pub fn is_damped(&self) -> bool {
+        let is_bend_damped = match self {
+            Self::Alike { bend, .. } | Self::Sheet { rigidity: bend, .. } => bend.is_some_and(|bend| bend.c > 0.0),
+            Self::Pulling(_) => false,
+        };
+        is_bend_damped || self.is_stretch_damped()
+    }
+
+    fn is_stretch_damped(&self) -> bool {
         match self {
             Self::Alike { stretch, bend } => stretch.c > 0.0 || bend.is_some_and(|bend| bend.c > 0.0),
             Self::Pulling(_) => false,
-            Self::Sheet { stretch: [warp, _], rigidity } => {
-                warp.damping > 0.0 || rigidity.is_some_and(|rigidity| rigidity.c > 0.0)
-            }
+            Self::Sheet { stretch: [warp, _], .. } => warp.damping > 0.0,
         }
     }
 }
@@ -284,7 +291,7 @@ impl Weaver<'_> {
     /// Solves one or two packs of threads.
     fn solve_packs(&self, pack: &mut Pack, run: ThreadRun, rows: &mut Rows) {
         let level = self.instructions.level();
-        match (pack.position.len() > pack.stride, self.yarn.is_damped()) {
+        match (pack.position.len() > pack.stride, self.yarn.is_stretch_damped()) {
             (true, false) => dispatch!(level, simd => run.solve::<_, f32x16<_>, false>(simd, pack, rows)),
             (true, true) => dispatch!(level, simd => run.solve::<_, f32x16<_>, true>(simd, pack, rows)),
             (false, false) => dispatch!(level, simd => run.solve::<_, f32x8<_>, false>(simd, pack, rows)),
@@ -391,7 +398,11 @@ impl ThreadRun<'_> {
             Yarn::Pulling(pull) => self.stretch::<S, F, _, false>(simd, pack, pull, rows),
             Yarn::Sheet { stretch, rigidity } => {
                 if let Some(rigidity) = rigidity {
-                    self.bend::<S, DAMPED>(simd, pack, rigidity, rows);
+                    if rigidity.c > 0.0 {
+                        self.bend::<S, true>(simd, pack, rigidity, rows);
+                    } else {
+                        self.bend::<S, false>(simd, pack, rigidity, rows);
+                    }
                 }
                 let grading = stretch[threads.grain.index()];
                 let laws = SheetThreads { shares: &threads.shares[first..], grading };
