@@ -82,7 +82,9 @@ fn revert_springs(world: &mut World, cloth: Entity, loaded: Option<ClothSprings>
                 entity.insert(loaded);
             }
         }
-        (None, Ok(mut entity)) => drop(entity.remove::<ClothSprings>()),
+        (None, Ok(mut entity)) => {
+            entity.remove::<ClothSprings>();
+        }
         (_, Err(_)) => {}
     }
 }

@@ -43,7 +43,9 @@ impl Quiet {
     fn new() -> Self {
         let mut app = headless_with(ClothPlugin::new(Update).single_threaded());
         for schedule in [PreUpdate.intern(), Update.intern()] {
-            app.edit_schedule(schedule, |schedule| drop(schedule.set_executor(SingleThreadedExecutor::new())));
+            app.edit_schedule(schedule, |schedule| {
+                schedule.set_executor(SingleThreadedExecutor::new());
+            });
         }
         Self { app, log: Log::default() }
     }

@@ -81,8 +81,12 @@ fn springs_may_be_there_from_the_beginning() {
 fn a_cloth_that_bad_springs_keep_from_being_built_is_tried_again_when_they_change_or_go() {
     let mends: [fn(&mut App, Entity); 3] = [
         |app, cloth| get_mut::<ClothSprings>(app, cloth).shear_stiffness = 1.0,
-        |app, cloth| drop(app.world_mut().entity_mut(cloth).insert(ClothSprings::default())),
-        |app, cloth| drop(app.world_mut().entity_mut(cloth).remove::<ClothSprings>()),
+        |app, cloth| {
+            app.world_mut().entity_mut(cloth).insert(ClothSprings::default());
+        },
+        |app, cloth| {
+            app.world_mut().entity_mut(cloth).remove::<ClothSprings>();
+        },
     ];
     for mend in mends {
         let mut app = headless();
