@@ -76,7 +76,7 @@ impl Bed {
     }
 
     /// Integrated in the way of `case`.
-    pub fn as_in(mut self, case: &Case) -> Self {
+    pub fn solved_as_in(mut self, case: &Case) -> Self {
         self.method = case.method;
         self.substeps = case.substeps.unwrap_or(1);
         self

@@ -103,7 +103,8 @@ fn hang(
     // Half a cell of the first is clamped.
     let cell = overhang / (f64::from(cells) - 0.5);
     let strip = Strip { kind, cells, cell, cells_across: 6, direction };
-    let mut bed = Bed::new(strip.mesh(), bare(fabric.clone())).as_in(&case).pinned(|p| strip.along(p) < 1.01 * cell);
+    let mut bed =
+        Bed::new(strip.mesh(), bare(fabric.clone())).solved_as_in(&case).pinned(|p| strip.along(p) < 1.01 * cell);
     // Near the critical damping of its slowest swing.
     let rest = bed.settle(2.0 * (f64::from(GRAVITY) / expected).sqrt() as f32, 20.0);
     let end = bed.chosen(|p| strip.along(p) > strip.length() - 0.01 * cell);

@@ -37,7 +37,7 @@ fn farthest(kind: Kind, case: Case) -> Measurement {
     let length = strip.length();
     let span = length / SLACK;
     let close = 0.01 * strip.cell;
-    let mut bed = Bed::new(strip.mesh(), bare(fabric)).as_in(&case);
+    let mut bed = Bed::new(strip.mesh(), bare(fabric)).solved_as_in(&case);
     let chain = Chain::new(length, span);
     let axis = strip.axis();
     // Let go as a V: the ends are at the span, the middle is below.

@@ -135,7 +135,7 @@ fn converge(outcome: &mut Outcome) {
 /// Drapes a disc and measures its shadow, in % of the ring.
 fn coefficient(fabric: &Fabric, kind: Kind, case: Case) -> Measurement {
     let edge = RADIUS / f64::from(case.n);
-    let mut bed = Bed::new(mesh::disc(kind, RADIUS, SUPPORT, edge), bare(fabric.clone())).as_in(&case);
+    let mut bed = Bed::new(mesh::disc(kind, RADIUS, SUPPORT, edge), bare(fabric.clone())).solved_as_in(&case);
     bed = bed.pinned(|p| f64::from(p.length()) < SUPPORT + 0.6 * edge);
     let mut rng = Rng::with_seed(0);
     for (position, &w) in bed.particles.position.iter_mut().zip(&bed.particles.inverse_mass) {

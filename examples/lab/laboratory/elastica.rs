@@ -54,7 +54,9 @@ impl Elastica {
     /// The one whose chord from the clamp to the free end goes down at `angle`, rad, up to some 80°.
     pub fn with_chord(angle: f64) -> Self {
         let excess = |tip: f64| Self::with_tip(tip).chord() - angle;
-        Self::with_tip(roots::bisect(40, 1e-4, 1.5707, excess))
+        // With its end upright the curve would have no end.
+        let steepest = core::f64::consts::FRAC_PI_2 - 1e-4;
+        Self::with_tip(roots::bisect(40, 1e-4, steepest, excess))
     }
 
     /// Overhang over bending length.

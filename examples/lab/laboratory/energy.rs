@@ -68,7 +68,7 @@ pub fn run(_: Extent) -> Outcome {
 fn swing(case: &Case) -> (f64, Vec<f64>) {
     let side = 1.0;
     let grid = ClothGrid::new(side, side, CELLS + 1, CELLS + 1).lying();
-    let mut bed = Bed::new(grid, bare(Fabric::COTTON_WOVEN)).as_in(case);
+    let mut bed = Bed::new(grid, bare(Fabric::COTTON_WOVEN)).solved_as_in(case);
     bed = bed.pinned(|p| p.z < -0.499 * side);
     for position in &mut bed.particles.position {
         let way = position.z + 0.5 * side;

@@ -31,7 +31,7 @@ pub fn run(_: Extent) -> Outcome {
 /// A square metre.
 fn sheet(case: &Case) -> Bed {
     let grid = ClothGrid::new(1.0, 1.0, CELLS + 1, CELLS + 1).lying();
-    Bed::new(grid, bare(Fabric::COTTON_WOVEN)).as_in(case)
+    Bed::new(grid, bare(Fabric::COTTON_WOVEN)).solved_as_in(case)
 }
 
 /// Way and speed after a second.

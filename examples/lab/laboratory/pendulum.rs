@@ -69,7 +69,7 @@ fn bessel(x: f64) -> f64 {
 fn hung(case: &Case, aside: impl Fn(f64) -> f64) -> Bed {
     let columns = if case.n == 1 { 2 } else { 4 };
     let grid = ClothGrid::new(0.1, LENGTH as f32, columns, case.n + 1);
-    let bed = Bed::new(grid, bare(Fabric::COTTON_WOVEN)).as_in(case);
+    let bed = Bed::new(grid, bare(Fabric::COTTON_WOVEN)).solved_as_in(case);
     let mut bed = bed.pinned(|p| p.y > 0.499 * LENGTH as f32);
     let step = LENGTH / f64::from(case.n);
     let mut depths = vec![0.0];

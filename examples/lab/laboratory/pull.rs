@@ -93,7 +93,7 @@ impl Law {
 
 /// Pulls with the force that should lead to `strain`, and returns what it leads to.
 fn pull(outcome: &mut Outcome, fabric: &Fabric, strip: &Strip, case: &Case, law: &Law, strain: f64) -> f64 {
-    let mut bed = Bed::new(strip.mesh(), bare(fabric.clone())).as_in(case);
+    let mut bed = Bed::new(strip.mesh(), bare(fabric.clone())).solved_as_in(case);
     bed.gravity = Vec3A::ZERO;
     let close = 0.01 * strip.cell;
     let ends = [

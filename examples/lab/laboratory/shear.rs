@@ -38,7 +38,7 @@ fn shear(kind: Kind, fabric: &Fabric, case: Case) -> Measurement {
     let square = Strip { kind, cells: case.n, cell: 0.01, cells_across: case.n, direction: "warp" };
     let modulus = f64::from(fabric.shear_stiffness);
     let traction = modulus * ANGLE;
-    let mut bed = Bed::new(square.mesh(), bare(fabric.clone())).as_in(&case);
+    let mut bed = Bed::new(square.mesh(), bare(fabric.clone())).solved_as_in(&case);
     bed.gravity = Vec3A::ZERO;
     let (side, close) = (square.length(), 0.01 * square.cell);
     // -1 and 1 at a side, 0 between.

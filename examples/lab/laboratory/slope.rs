@@ -39,7 +39,7 @@ pub fn run(_: Extent) -> Outcome {
 /// Whether a cloth that is laid on a slope of so many degrees goes down within two seconds.
 fn slides(case: &Case, fabric: &Fabric, angle: f32) -> bool {
     let turn = Quat::from_rotation_z(-angle.to_radians());
-    let mut bed = Bed::new(ClothGrid::new(0.5, 0.5, 9, 9).lying(), bare(fabric.clone())).as_in(case);
+    let mut bed = Bed::new(ClothGrid::new(0.5, 0.5, 9, 9).lying(), bare(fabric.clone())).solved_as_in(case);
     for position in &mut bed.particles.position {
         *position = turn * *position;
     }

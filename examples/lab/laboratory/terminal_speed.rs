@@ -20,7 +20,7 @@ pub fn run(_: Extent) -> Outcome {
         let fabric = Fabric { damping: 0.0, lift: 0.0, ..fabric };
         let expected = (2.0 * fabric.density * GRAVITY / (AIR * fabric.drag)).sqrt();
         let material = fabric.material().expect("a preset");
-        let mut bed = Bed::new(ClothGrid::new(0.5, 0.5, 9, 9).lying(), material).as_in(&case);
+        let mut bed = Bed::new(ClothGrid::new(0.5, 0.5, 9, 9).lying(), material).solved_as_in(&case);
         bed.fluid_density = AIR;
         bed.run(4.0);
         let speed = -bed.particles.velocity.iter().map(|v| f64::from(v.y)).sum::<f64>() / bed.particles.len() as f64;

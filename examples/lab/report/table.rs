@@ -51,7 +51,7 @@ fn number(value: f64) -> String {
 
 fn percent(share: f64) -> String {
     match 100.0 * share {
-        percent if percent == 0.0 => "0 %".into(),
+        0.0 => "0 %".into(),
         percent if percent.abs() >= 10.0 => format!("{percent:.0} %"),
         percent if percent.abs() >= 1.0 => format!("{percent:.1} %"),
         percent => format!("{percent:.2} %"),
