@@ -236,7 +236,10 @@ fn thread(moduli: &Moduli, grain: Grain) -> SpringLaw {
 
 #[cfg(test)]
 mod tests {
-    use proptest::{arbitrary::any, array, collection, prop_assert, prop_assert_eq, prop_oneof, proptest, strategy::Just, test_runner::Config};
+    use proptest::{
+        arbitrary::any, array, collection, prop_assert, prop_assert_eq, prop_oneof, proptest, strategy::Just,
+        test_runner::Config,
+    };
 
     use super::*;
 
