@@ -22,6 +22,7 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 use super::{beads::Beads, law::Grading};
 use crate::solver::{
     Face, Grain, Moduli, SpringConstants, SpringLaw,
+    lanes::apart,
     simd::{Instructions, LANES, SHORTEST, Vec3x8, lane},
 };
 
@@ -82,9 +83,11 @@ fn solve_gathered<S: Simd, const DAMPED: bool>(
         };
     }
     let (a, b, c) = (each!(particles[0]), each!(particles[1]), each!(particles[2]));
+    let eight = [&row(f0), &row(f1), &row(f2), &row(f3), &row(f4), &row(f5), &row(f6), &row(f7)];
+    let [u1, u2, v1, v2] = apart(simd, eight);
     let cut = Cut {
-        warp: [lane(simd, &each!(warp[0])), lane(simd, &each!(warp[1]))],
-        weft: [lane(simd, &each!(weft[0])), lane(simd, &each!(weft[1]))],
+        warp: [u1, u2],
+        weft: [v1, v2],
         area: lane(simd, &[f0.area, f1.area, f2.area, f3.area, f4.area, f5.area, f6.area, f7.area]),
     };
     let corners =
@@ -96,6 +99,12 @@ fn solve_gathered<S: Simd, const DAMPED: bool>(
     beads.put(&a, at_a, masses[0]);
     beads.put(&b, at_b, masses[1]);
     beads.put(&c, at_c, masses[2]);
+}
+
+/// Weights of the steps of one face.
+#[inline(always)]
+fn row(face: &Face) -> [f32; 4] {
+    [face.warp[0], face.warp[1], face.weft[0], face.weft[1]]
 }
 
 /// Steps along warp and weft.

@@ -6,7 +6,7 @@ use super::Bending;
 use crate::solver::{
     Bend,
     constraint::beads::{Beads, gather},
-    lanes::together,
+    lanes::{apart, together},
     simd::{LANES, SHORTEST, Vec3x8, lane},
 };
 
@@ -57,7 +57,10 @@ fn pull_eight<S: Simd, const FRAMED: bool>(
         };
     }
     let particles = [each!(particles[0]), each!(particles[1]), each!(particles[2]), each!(particles[3])];
-    let weights = [lane(simd, &each!(weights[1])), lane(simd, &each!(weights[2])), lane(simd, &each!(weights[3]))];
+    let eight =
+        [&b0.weights, &b1.weights, &b2.weights, &b3.weights, &b4.weights, &b5.weights, &b6.weights, &b7.weights];
+    let [_, w1, w2, w3] = apart(simd, eight);
+    let weights = [w1, w2, w3];
     let arms = Arms::of(simd, &beads.now, &particles);
     let pulls = if FRAMED {
         let rest =
