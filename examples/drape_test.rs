@@ -8,7 +8,7 @@ mod mesh;
 #[path = "lab/laboratory/shadow.rs"]
 mod shadow;
 
-use bevy::prelude::*;
+use bevy::{mesh::VertexAttributeValues, prelude::*};
 use bevy_drape::prelude::*;
 
 /// Radii of the cloth and of its support, m.
@@ -44,11 +44,11 @@ struct Specimen {
 struct Display;
 
 fn setup(mut commands: Commands, mut studio: common::Studio) {
-    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.25, 0.75), Vec3::new(0.0, 0.74, 0.0));
+    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.08, 0.48), Vec3::new(0.0, 0.77, 0.0));
     let support = Cylinder::new(SUPPORT as f32, HEIGHT);
     let wood = Color::srgb(0.45, 0.30, 0.19);
     commands.spawn((studio.solid(support, wood), Transform::from_xyz(0.0, HEIGHT / 2.0 - 0.001, 0.0)));
-    let disc = mesh::disc(mesh::Kind::Grid, RADIUS, SUPPORT, EDGE);
+    let disc = dressed(mesh::disc(mesh::Kind::Grid, RADIUS, SUPPORT, EDGE));
     // In the apparatus a second disc holds it down.
     let held = Pins::predicate(|vertex| f64::from(vertex.position.length()) < SUPPORT + 0.6 * EDGE);
     commands.spawn((
@@ -66,6 +66,14 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
         Node { position_type: PositionType::Absolute, left: px(24), top: px(20), ..default() },
         Display,
     ));
+}
+
+/// The mesh with what drawing asks for: the laboratory's has none of it.
+fn dressed(mesh: Mesh) -> Mesh {
+    let places =
+        mesh.attribute(Mesh::ATTRIBUTE_POSITION).and_then(VertexAttributeValues::as_float3).unwrap_or_default();
+    let uvs: Vec<[f32; 2]> = places.iter().map(|&[x, _, z]| [x, z]).collect();
+    mesh.with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs).with_computed_smooth_normals()
 }
 
 fn change_fabric(

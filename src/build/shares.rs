@@ -18,8 +18,14 @@ use super::cells::Cells;
 use crate::solver::{Spring, SpringKind};
 
 /// Gives the springs along and across each cell their share of it. `springs` are sorted by kind and lower end; `warp` is
-/// the direction of the warp in each triangle.
-pub(super) fn share_out(rest: &[Vec3], cells: &Cells, warp: &[Vec3], springs: &mut [(SpringKind, Spring)]) {
+/// the direction of the warp in each triangle. What has no area, as `slivers`, is held by threads of the mean stiffness.
+pub(super) fn share_out(
+    rest: &[Vec3],
+    cells: &Cells,
+    slivers: &[[u32; 3]],
+    warp: &[Vec3],
+    springs: &mut [(SpringKind, Spring)],
+) {
     let mut warp_of_cell = vec![Vec3::Y; cells.corners.len()];
     for (cell, &warp) in cells.of_triangle.iter().zip(warp) {
         if let Some(cell) = cell {
@@ -56,7 +62,19 @@ pub(super) fn share_out(rest: &[Vec3], cells: &Cells, warp: &[Vec3], springs: &m
             }
         }
     }
+    for &[i, j, k] in slivers {
+        for (p, q) in [(i, j), (j, k), (k, i)] {
+            if let Some(number) = find.spring(springs, SpringKind::Structural, p, q)
+                && springs[number].1.share == [0.0; 3]
+            {
+                springs[number].1.share = SIDE_OF_SLIVER;
+            }
+        }
+    }
 }
+
+/// What a side of a triangle without area has of a sheet.
+const SIDE_OF_SLIVER: [f32; 3] = [0.5, 0.5, 0.0];
 
 /// Where the springs of each kind begin at each particle.
 struct Finder([Vec<usize>; SpringKind::ALL.len()]);

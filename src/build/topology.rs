@@ -64,7 +64,7 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
         (kind, Spring { a, b, rest: length, ..Spring::default() })
     };
     let mut all: Vec<_> = links.iter().map(with_length).collect();
-    shares::share_out(&rest, &cells, &warp, &mut all);
+    shares::share_out(&rest, &cells, &slivers, &warp, &mut all);
     let rectangle = rectangle.filter(Rectangle::is_in_order);
     let woven = rectangle.as_ref().map(|rectangle| lattice::weave(&rest, rectangle, &all));
     let (lattice, braids, woven) = match woven {

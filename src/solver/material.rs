@@ -109,7 +109,8 @@ impl Moduli {
     /// The largest shear modulus (N/m) that goes with strips of such stiffness: k K / (K - k) for the smaller k and the
     /// larger K. Infinite where both are equal.
     pub fn most_shear([warp, weft]: [f32; 2]) -> f32 {
-        warp * weft / (warp - weft).abs()
+        let (smaller, larger) = (warp.min(weft), warp.max(weft));
+        smaller / (1.0 - smaller / larger)
     }
 
     /// Bending rigidity, N·m, and its damping, N·m·s.
