@@ -152,3 +152,91 @@ fn mean_energy(hinge: &Hinge) -> f32 {
     });
     squares.iter().sum::<f32>() / squares.len() as f32
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{build::topology_of, solver::Topology};
+
+    /// The topology of a sheet of `n` x `n` points, moved at random by up to a third of a cell inside, in triangles of
+    /// random diagonals: too irregular for a lattice.
+    fn irregular(n: u32, place: impl Fn(Vec2) -> Vec3) -> Topology {
+        let mut random = fastrand::Rng::with_seed(3);
+        let mut shift = |i: u32| if i > 0 && i < n - 1 { 0.66 * (random.f32() - 0.5) } else { 0.0 };
+        let points: Vec<Vec2> = (0..n * n)
+            .map(|i| (i % n, i / n))
+            .map(|(i, j)| Vec2::new(i as f32 + shift(i), j as f32 + shift(j)) / (n - 1) as f32)
+            .collect();
+        let cells = (0..n - 1).flat_map(|j| (0..n - 1).map(move |i| j * n + i));
+        let indices = cells.flat_map(|a| {
+            let [b, c, d] = [a + 1, a + n + 1, a + n];
+            if a % 7 < 3 { [a, b, c, a, c, d] } else { [a, b, d, b, c, d] }
+        });
+        let uvs: Vec<[f32; 2]> = points.iter().map(|p| p.to_array()).collect();
+        let positions: Vec<[f32; 3]> = points.iter().map(|&p| place(p).to_array()).collect();
+        let mesh = Mesh::new(bevy::mesh::PrimitiveTopology::TriangleList, default())
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
+            .with_inserted_indices(bevy::mesh::Indices::U32(indices.collect()));
+        topology_of(&mesh, bevy::math::Mat3A::IDENTITY).unwrap()
+    }
+
+    fn sum(bend: &Bend, height: impl Fn(u32) -> f32) -> f32 {
+        bend.particles.iter().zip(bend.weights).map(|(&i, weight)| weight * height(i)).sum()
+    }
+
+    #[test]
+    fn a_bent_sheet_has_the_energy_of_its_rigidity_on_average_and_a_tilted_one_none() {
+        let topology = irregular(20, |p| p.extend(0.0));
+        let at = |i: u32| topology.rest[i as usize].truncate();
+        assert!(topology.lattice.is_none() && !topology.is_curved);
+        let energy = |degrees: f32| -> f32 {
+            let direction = Vec2::from_angle(degrees.to_radians());
+            let height = |i: u32| 0.5 * at(i).dot(direction) * at(i).dot(direction);
+            topology.bends.iter().map(|bend| sum(bend, height) * sum(bend, height)).sum()
+        };
+        let energies = [0.0, 30.0, 60.0, 90.0, 120.0, 150.0].map(energy);
+        let mean = energies.iter().sum::<f32>() / 6.0;
+        // A square metre, less a part of the hinges along its border.
+        assert!((0.9..1.03).contains(&mean), "{energies:?}");
+        assert!(energies.iter().all(|energy| (energy / mean - 1.0).abs() < 0.35), "{energies:?}");
+        for bend in &topology.bends {
+            let size: f32 = bend.weights.iter().map(|weight| weight.abs()).sum();
+            assert!(sum(bend, |i| at(i).x).abs() < 1e-5 * size && sum(bend, |_| 1.0).abs() < 1e-5 * size);
+        }
+    }
+
+    #[test]
+    fn what_is_curved_has_its_sum_at_rest_and_flat_places_have_exactly_none() {
+        // Flat, and from the middle on a part of a tube.
+        let radius = 0.5;
+        let topology = irregular(20, |p| {
+            let angle = (p.x - 0.5).max(0.0) / radius;
+            let end = p.x.min(0.5);
+            Vec3::new(end + radius * ops::sin(angle), p.y, radius * (1.0 - ops::cos(angle)))
+        });
+        assert!(topology.is_curved);
+        for bend in &topology.bends {
+            let places = bend.particles.map(|i| topology.rest[i as usize]);
+            let sum: Vec3 = places.iter().zip(bend.weights).map(|(&p, weight)| p * weight).sum();
+            let along = (places[1] - places[0]).normalize();
+            let across = (places[3] - places[2]).reject_from(along).normalize();
+            let [x, y, z] = bend.rest;
+            let rest = along * x + across * y + along.cross(across) * z;
+            if places.iter().all(|p| p.x < 0.5) {
+                assert_eq!(bend.rest, [0.0; 3]);
+            } else {
+                assert!(sum.distance(rest) < 2.0 * FLAT, "{sum} {rest}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_mesh_of_two_triangles_bends() {
+        let rest = [Vec3::ZERO, Vec3::X, Vec3::new(0.3, -0.6, 0.0), Vec3::new(0.2, 0.9, 0.0)];
+        let triangles = [[0, 2, 1], [0, 1, 3]];
+        let bends = find(&rest, &Edges::new(4, &triangles), &[0.25, 0.25, 0.1, 0.15], &[0.3, 0.45], &[Vec3::Y; 2]);
+        assert_eq!(bends.len(), 1);
+        assert!(bends[0].0.weights.iter().all(|weight| weight.is_finite() && *weight != 0.0));
+    }
+}

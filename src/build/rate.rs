@@ -58,3 +58,22 @@ fn start(i: u32) -> f32 {
     let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x85eb_ca6b);
     (mixed ^ (mixed >> 13)) as i32 as f32 / i32::MAX as f32
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rate_of_one_bend_and_of_two_that_share_a_particle() {
+        let weights = [3.0, 3.0, -6.0, 0.0];
+        let one = Bend { particles: [0, 2, 1, 3], weights, ..Bend::default() };
+        let other = Bend { particles: [4, 5, 1, 3], weights, ..Bend::default() };
+        let areas = [2.0; 6];
+        let rate = of_bends(&[one], &areas);
+        assert!((rate / (MARGIN * 54.0 / 2.0) - 1.0).abs() < 1e-3, "{rate}");
+        // Both have 36 of 54 in common.
+        let rate = of_bends(&[one, other], &areas);
+        assert!((rate / (MARGIN * 90.0 / 2.0) - 1.0).abs() < 1e-3, "{rate}");
+        assert_eq!(of_bends(&[], &areas), 0.0);
+    }
+}

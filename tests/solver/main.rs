@@ -15,6 +15,7 @@ mod levels;
 mod memory;
 mod rates;
 mod robustness;
+mod sheets;
 mod speed_limit;
 mod springs;
 mod statics;

@@ -6,7 +6,7 @@ use super::Bending;
 use crate::solver::{
     Bend,
     constraint::beads::{Beads, gather},
-    lanes::together,
+    lanes::{apart, together},
     simd::{LANES, SHORTEST, Vec3x8, lane},
 };
 
@@ -57,7 +57,10 @@ fn pull_eight<S: Simd, const FRAMED: bool>(
         };
     }
     let particles = [each!(particles[0]), each!(particles[1]), each!(particles[2]), each!(particles[3])];
-    let weights = [lane(simd, &each!(weights[1])), lane(simd, &each!(weights[2])), lane(simd, &each!(weights[3]))];
+    let eight =
+        [&b0.weights, &b1.weights, &b2.weights, &b3.weights, &b4.weights, &b5.weights, &b6.weights, &b7.weights];
+    let [_, w1, w2, w3] = apart(simd, eight);
+    let weights = [w1, w2, w3];
     let arms = Arms::of(simd, &beads.now, &particles);
     let pulls = if FRAMED {
         let rest =
@@ -167,7 +170,7 @@ impl<S: Simd> Arms<S> {
 mod tests {
     use bevy::math::Vec3A;
     use fearless_simd::dispatch;
-    use proptest::prelude::*;
+    use proptest::{collection, prop_assert, proptest, test_runner::Config};
 
     use super::{
         super::bent::tests::{hinge, state},
@@ -205,10 +208,12 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(Config { failure_persistence: None, ..Config::default() })]
+
         #[test]
-        fn eight_side_by_side_pull_as_the_textbook_does(noise in prop::collection::vec(-1.0_f32..1.0, 24)) {
+        fn eight_side_by_side_pull_as_the_textbook_does(noise in collection::vec(-1.0_f32..1.0, 24)) {
             // Not so bent that it counts as folded.
-            let (now, velocities) = state(&noise.iter().map(|x| 0.3 * x).collect::<Vec<f32>>());
+            let (now, velocities) = state(&noise.iter().map(|x| 0.1 * x).collect::<Vec<f32>>());
             let before = [0, 1, 2, 3].map(|i| now[i] - velocities[i]);
             let moduli = Moduli { bending: 2.0, bend_damping: 0.25, ..Moduli::default() };
             let bend = hinge();

@@ -63,7 +63,7 @@ impl Bent {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use proptest::prelude::*;
+    use proptest::{collection, prop_assert, proptest, test_runner::Config};
 
     use super::*;
 
@@ -80,8 +80,10 @@ pub(super) mod tests {
     }
 
     proptest! {
+        #![proptest_config(Config { failure_persistence: None, ..Config::default() })]
+
         #[test]
-        fn forces_are_the_slope_of_the_energy_and_turn_nothing(noise in prop::collection::vec(-1.0_f32..1.0, 24)) {
+        fn forces_are_the_slope_of_the_energy_and_turn_nothing(noise in collection::vec(-1.0_f32..1.0, 24)) {
             let (points, velocities) = state(&noise);
             let bend = hinge();
             let moduli = Moduli { bending: 1.0, ..Moduli::default() };
