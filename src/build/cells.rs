@@ -21,6 +21,37 @@ pub(crate) struct Cells {
     pub of_triangle: Vec<Option<u32>>,
 }
 
+/// Largest |cos| of a corner of a cell whose springs can be a sheet, and largest cosine between its sides and what they
+/// should be along, the warp or across it.
+const MOST_ASKEW: f32 = 0.1;
+
+impl Cells {
+    /// Those whose springs can be a sheet with the `warp` of each triangle: the others would be stiffer than it.
+    pub fn true_to(&self, rest: &[Vec3], warp: &[Vec3]) -> Self {
+        let mut warp_of_cell = vec![Vec3::ZERO; self.corners.len()];
+        for (cell, &warp) in self.of_triangle.iter().zip(warp) {
+            if let Some(cell) = cell {
+                warp_of_cell[*cell as usize] = warp;
+            }
+        }
+        let is_true = |(corners, warp): (&[u32; 4], &Vec3)| {
+            let p = corners.map(|i| rest[i as usize]);
+            let sides: [Vec3; 4] = array::from_fn(|i| (p[(i + 1) % 4] - p[i]).normalize_or_zero());
+            let corner = |i: usize| sides[i].dot(sides[(i + 1) % 4]).abs() < MOST_ASKEW;
+            let along = [sides[0].dot(*warp).abs(), sides[1].dot(*warp).abs()];
+            (0..4).all(corner) && along[0].min(along[1]) < MOST_ASKEW
+        };
+        let kept: Vec<bool> = self.corners.iter().zip(&warp_of_cell).map(is_true).collect();
+        let numbers: Vec<u32> =
+            kept.iter().scan(0, |next, &kept| Some(core::mem::replace(next, *next + u32::from(kept)))).collect();
+        let number = |cell: Option<u32>| cell.filter(|&cell| kept[cell as usize]).map(|cell| numbers[cell as usize]);
+        Self {
+            corners: self.corners.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(corners, _)| *corners).collect(),
+            of_triangle: self.of_triangle.iter().map(|&cell| number(cell)).collect(),
+        }
+    }
+}
+
 /// Pairs triangles into cells, the most rectangular pairs first; each triangle is in one cell at most.
 pub(crate) fn find(rest: &[Vec3], triangles: &[[u32; 3]], edges: &Edges) -> Cells {
     let mut candidates: Vec<(f32, &[HalfEdge])> = edges

@@ -64,8 +64,10 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
         (kind, Spring { a, b, rest: length, ..Spring::default() })
     };
     let mut all: Vec<_> = links.iter().map(with_length).collect();
-    shares::share_out(&rest, &cells, &slivers, &warp, &mut all);
     let rectangle = rectangle.filter(Rectangle::is_in_order);
+    // Rows and columns are threads, whichever way they run.
+    let carrying = if rectangle.is_some() { cells.clone() } else { cells.true_to(&rest, &warp) };
+    shares::share_out(&rest, &carrying, &slivers, &warp, &mut all);
     let woven = rectangle.as_ref().map(|rectangle| lattice::weave(&rest, rectangle, &all));
     let (lattice, braids, woven) = match woven {
         Some((lattice, woven)) => (Some(lattice), Vec::new(), woven),
@@ -84,7 +86,7 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
     let (springs, batches) = coloring::batches(rest.len(), &all, &woven);
     let triangle_areas: Vec<f32> = triangles.iter().map(|triangle| triangle_area(&rest, triangle)).collect();
     let areas = particle_areas(rest.len(), &triangles, &triangle_areas);
-    let (faces, face_batches) = faces::find(&rest, &triangles, &cells, &warp);
+    let (faces, face_batches) = faces::find(&rest, &triangles, &carrying, &warp);
     let (bends, bend_batches) = match (&lattice, &rectangle) {
         (Some(_), Some(rectangle)) => bends::of_plate(&Plate::new(&rest, rectangle), rest.len()),
         _ => bends::batches(rest.len(), &hinges::find(&rest, &edges, &areas, &triangle_areas, &warp)),

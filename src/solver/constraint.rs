@@ -3,6 +3,7 @@
 pub(super) mod anchor;
 pub(super) mod beads;
 pub(super) mod bend;
+pub(super) mod bias;
 pub(super) mod braid;
 pub(super) mod curvature;
 pub(super) mod diagonal;

@@ -11,6 +11,7 @@ use bevy::tasks::TaskPool;
 use super::{
     Instructions, Lanes, Particles,
     constraint::{
+        bias::Bias,
         diagonal::{self, CellYarn, Seam},
         level::{LevelRun, Levels},
         tether::{self, PinPlaces, TetherBlock},
@@ -47,6 +48,8 @@ pub(super) struct Bench {
     pub loom: Loom,
     /// Rows between bands.
     pub seam: Seam,
+    /// Diagonals that are being solved.
+    pub bias: Bias,
     /// Ways of a level's rows, spread over eight columns.
     pub across: Points,
 }
@@ -146,20 +149,21 @@ impl Cloth<'_> {
             levels.move_band(run, band, position, inverse_mass, &mut lock(&self.benches[worker]).across);
         }
         tether::solve(position, inverse_mass, *first, tethers, pins, slack, instructions);
-        diagonal::solve_band(&mut run.sheet(), band, 0, lattice, cells, instructions);
+        let bias = &mut lock(&self.benches[worker]).bias;
+        diagonal::solve_band(&mut run.sheet(), band, 0, lattice, cells, bias, instructions);
     }
 
     /// The diagonals below odd rows, and those to the band above: they have no particle in common.
     fn cross(&self, number: usize, worker: usize) {
         let Work { weaver: Weaver { lattice, instructions, .. }, cells, .. } = *self.work;
         let band = self.bands[number];
-        diagonal::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, cells, instructions);
+        let Bench { seam, bias, .. } = &mut **lock(&self.benches[worker]);
+        diagonal::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, cells, bias, instructions);
         let Some(above) = number.checked_sub(1) else { return };
-        let seam = &mut lock(&self.benches[worker]).seam;
         for (row, band) in [above, number].into_iter().enumerate() {
             seam.take(&lock(&self.runs[band]).sheet(), self.bands[band], row);
         }
-        seam.solve(band, lattice, cells, instructions);
+        seam.solve(band, lattice, cells, bias, instructions);
         for (row, band) in [above, number].into_iter().enumerate() {
             seam.put(lock(&self.runs[band]).position, self.bands[band], row);
         }

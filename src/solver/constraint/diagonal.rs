@@ -1,4 +1,5 @@
-//! The diagonals of a lattice's cells, eight at a time: the springs against shear.
+//! The diagonals of a lattice's cells, eight at a time: the springs against shear. Those of a sheet are strands, in
+//! [`bias`](super::bias).
 //!
 //! ```text
 //!   o       o       o       row           \ falling      / rising
@@ -16,6 +17,7 @@
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
+    bias::{Bias, Diagonals},
     law::Scaled,
     plate::Plate,
     spring::{End, solve_abreast},
@@ -63,19 +65,20 @@ pub(in crate::solver) fn solve(
     lattice: &Lattice,
     yarn: CellYarn,
     seam: &mut Seam,
+    bias: &mut Bias,
     instructions: Instructions,
 ) {
     let bands = lattice.order().bands();
     for parity in [0, 1] {
         for band in bands.clone() {
-            solve_band(&mut sheet.band(band), band, parity, lattice, yarn, instructions);
+            solve_band(&mut sheet.band(band), band, parity, lattice, yarn, bias, instructions);
         }
     }
     for (upper, lower) in bands.clone().zip(bands.skip(1)) {
         for (band, row) in [(upper, 0), (lower, 1)] {
             seam.take(&sheet.band(band), band, row);
         }
-        seam.solve(lower, lattice, yarn, instructions);
+        seam.solve(lower, lattice, yarn, bias, instructions);
         for (band, row) in [(upper, 0), (lower, 1)] {
             seam.put(sheet.band(band).position, band, row);
         }
@@ -89,11 +92,13 @@ pub(in crate::solver) fn solve_band(
     parity: usize,
     lattice: &Lattice,
     yarn: CellYarn,
+    bias: &mut Bias,
     instructions: Instructions,
 ) {
-    solve_pairs(sheet, band.rows, band.first, parity, lattice, yarn, instructions);
+    solve_pairs(sheet, band.rows, band.first, parity, lattice, yarn, bias, instructions);
 }
 
+#[expect(clippy::too_many_arguments, reason = "what is solved, where, with what")]
 /// The same in a sheet of so many `rows`, whose `first` is its number in the lattice.
 fn solve_pairs(
     sheet: &mut Sheet,
@@ -102,6 +107,7 @@ fn solve_pairs(
     parity: usize,
     lattice: &Lattice,
     yarn: CellYarn,
+    bias: &mut Bias,
     instructions: Instructions,
 ) {
     let level = instructions.level();
@@ -117,10 +123,12 @@ fn solve_pairs(
     }
     match (yarn.is_sheet, yarn.spring.c > 0.0) {
         _ if !yarn.spring.acts() => {}
-        (false, false) => dispatch!(level, simd => pairs.solve_diagonals::<_, false, false>(simd, sheet, some)),
-        (false, true) => dispatch!(level, simd => pairs.solve_diagonals::<_, false, true>(simd, sheet, some)),
-        (true, false) => dispatch!(level, simd => pairs.solve_diagonals::<_, true, false>(simd, sheet, some)),
-        (true, true) => dispatch!(level, simd => pairs.solve_diagonals::<_, true, true>(simd, sheet, some)),
+        (false, false) => dispatch!(level, simd => pairs.solve_diagonals::<_, false>(simd, sheet, some)),
+        (false, true) => dispatch!(level, simd => pairs.solve_diagonals::<_, true>(simd, sheet, some)),
+        // All rows at once.
+        (true, _) if parity > 0 => {}
+        (true, false) => dispatch!(level, simd => pairs.solve_bias::<_, false>(simd, sheet, bias)),
+        (true, true) => dispatch!(level, simd => pairs.solve_bias::<_, true>(simd, sheet, bias)),
     }
 }
 
@@ -149,10 +157,17 @@ impl Seam {
     }
 
     /// Solves the diagonals above the band `below`.
-    pub fn solve(&mut self, below: Band, lattice: &Lattice, yarn: CellYarn, instructions: Instructions) {
+    pub fn solve(
+        &mut self,
+        below: Band,
+        lattice: &Lattice,
+        yarn: CellYarn,
+        bias: &mut Bias,
+        instructions: Instructions,
+    ) {
         let Self { position, previous, inverse_mass } = self;
         let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
-        solve_pairs(&mut sheet, 2, below.first - 1, 0, lattice, yarn, instructions);
+        solve_pairs(&mut sheet, 2, below.first - 1, 0, lattice, yarn, bias, instructions);
     }
 
     /// Puts a row back.
@@ -194,9 +209,20 @@ impl RowPairs<'_> {
         [self.end::<S, DAMPED>(simd, sheet, at), self.end::<S, DAMPED>(simd, sheet, at + 1)]
     }
 
-    /// Solves the diagonals below `some` rows.
+    /// Solves the diagonals of a sheet as strands.
     #[inline(always)]
-    fn solve_diagonals<S: Simd, const SHEET: bool, const DAMPED: bool>(
+    fn solve_bias<S: Simd, const DAMPED: bool>(&self, simd: S, sheet: &mut Sheet, bias: &mut Bias) {
+        let Scaled { k, c } = self.yarn.spring;
+        let Lattice { rows: stride, falling, rising, cell_shares, .. } = self.lattice;
+        let shares = &cell_shares[self.first..];
+        let diagonals = |rest| Diagonals { rows: self.rows, rest, shares, stride: *stride, spring: [k, c] };
+        diagonals(&falling[self.first..]).solve::<S, false, DAMPED>(simd, sheet, bias);
+        diagonals(&rising[self.first..]).solve::<S, true, DAMPED>(simd, sheet, bias);
+    }
+
+    /// Solves the diagonals below `some` rows one by one.
+    #[inline(always)]
+    fn solve_diagonals<S: Simd, const DAMPED: bool>(
         &self,
         simd: S,
         sheet: &mut Sheet,
@@ -208,14 +234,14 @@ impl RowPairs<'_> {
             // By turns, so that what comes first doesn't set the cloth spinning.
             let pairs = if (self.first + row) % 4 < 2 { [falling, rising] } else { [rising, falling] };
             for (rest, ends) in pairs {
-                self.solve_row_pair::<S, SHEET, DAMPED>(simd, sheet, row, rest, ends);
+                self.solve_row_pair::<S, DAMPED>(simd, sheet, row, rest, ends);
             }
         }
     }
 
     /// Solves the springs from each particle of one row to the next column of another. `rest` has their lengths, m.
     #[inline(always)]
-    fn solve_row_pair<S: Simd, const SHEET: bool, const DAMPED: bool>(
+    fn solve_row_pair<S: Simd, const DAMPED: bool>(
         &self,
         simd: S,
         sheet: &mut Sheet,
@@ -227,8 +253,7 @@ impl RowPairs<'_> {
         let mut here = self.end::<S, DAMPED>(simd, sheet, to);
         // The first particle of the row is nobody's next one.
         let mut moved_before = here.position.ahead(here.position);
-        let of_blocks = self.of_row(rest, row).zip(self.of_row(&self.lattice.cell_shares, row));
-        for (at, (rest, share)) in (0..count).step_by(self.rows).zip(of_blocks) {
+        for (at, rest) in (0..count).step_by(self.rows).zip(self.of_row(rest, row)) {
             // After the last block comes nobody: there are no springs to it.
             let next = self.end::<S, DAMPED>(simd, sheet, (at + self.rows + to).min(count - self.rows + to));
             let ahead = End {
@@ -237,12 +262,7 @@ impl RowPairs<'_> {
                 inverse_mass: here.inverse_mass.slide::<1>(next.inverse_mass),
             };
             let (end, rest) = (self.end::<S, DAMPED>(simd, sheet, at + from), lane(simd, rest));
-            let [a, b] = if SHEET {
-                let share = lane(simd, share);
-                solve_abreast::<_, _, DAMPED>(simd, end, ahead, rest, [share * spring.k, share * spring.c])
-            } else {
-                solve_abreast::<_, _, DAMPED>(simd, end, ahead, rest, spring)
-            };
+            let [a, b] = solve_abreast::<_, _, DAMPED>(simd, end, ahead, rest, spring);
             a.store(&mut sheet.position[at + from]);
             moved_before.behind(b).store(&mut sheet.position[at + to]);
             (here, moved_before) = (next, b);

@@ -85,11 +85,11 @@ pub(in crate::solver) struct Springs<'a, L> {
 }
 
 /// A spring's row of the system: its direction, its factor t on both sides, its diagonal entry and its right side.
-struct Row<F> {
-    along: Vec3Wide<F>,
-    factor: F,
-    diagonal: F,
-    right: F,
+pub(super) struct Row<F> {
+    pub along: Vec3Wide<F>,
+    pub factor: F,
+    pub diagonal: F,
+    pub right: F,
 }
 
 impl Pack<'_> {
@@ -274,15 +274,32 @@ impl<L> Springs<'_, L> {
     where
         L: Laws<S, F>,
     {
-        let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
-        let along = next.position - here.position;
-        let squared = along.dot(along);
-        let length = squared.sqrt();
         let mut rest = F::load(simd, self.rest, at, stride);
         if L::ONLY_PULLS {
             rest *= self.laws.give();
         }
-        let [k, c] = self.laws.at(simd, at, stride).scaled(simd, rest, length);
+        let longer_than = if L::ONLY_PULLS { rest } else { F::splat(simd, SHORTEST) };
+        Row::new::<S, DAMPED>(simd, [here, next], [rest, longer_than], self.laws.at(simd, at, stride))
+    }
+}
+
+impl<F> Row<F> {
+    /// The rows of springs side by side with these rest lengths, which act where they are longer than the others, m.
+    #[inline(always)]
+    pub(super) fn new<S: Simd, const DAMPED: bool>(
+        simd: S,
+        [here, next]: [End<F>; 2],
+        [rest, longer_than]: [F; 2],
+        law: impl Law<S, F>,
+    ) -> Self
+    where
+        F: Wide<S>,
+    {
+        let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
+        let along = next.position - here.position;
+        let squared = along.dot(along);
+        let length = squared.sqrt();
+        let [k, c] = law.scaled(simd, rest, length);
         let mut right = length * (rest - length) * k;
         let mut factor = k;
         if DAMPED {
@@ -290,9 +307,8 @@ impl<L> Springs<'_, L> {
             right -= along.dot(way) * c;
             factor += c;
         }
-        let longer_than = if L::ONLY_PULLS { rest } else { F::splat(simd, SHORTEST) };
         let acts = rest.simd_gt(none) & length.simd_gt(longer_than);
-        Row {
+        Self {
             along: along.or(acts, Vec3Wide::splat(simd, [0.0; 3])),
             factor,
             diagonal: acts.select(squared * ((here.inverse_mass + next.inverse_mass) * factor + one), one),

@@ -143,7 +143,8 @@ impl Substep<'_> {
             }
         }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, ways, bending, bench: Bench { loom, seam, .. }, plate, instructions, .. } = scratch;
+        let Scratch { lanes, beads, ways, bending, bench: Bench { loom, seam, bias, .. }, plate, instructions, .. } =
+            scratch;
         let (material, h) = (&self.ctx.material, self.h);
         let braids = &self.topology.braids;
         let strung = (!braids.is_empty()).then_some(Strung { braids, yarn, loom: &mut *loom });
@@ -151,7 +152,7 @@ impl Substep<'_> {
         if let Some(lattice) = &self.topology.lattice {
             let mut run = lanes.whole();
             let mut sheet = run.sheet();
-            diagonal::solve(&mut sheet, lattice, CellYarn::new(material, h, plate), seam, *instructions);
+            diagonal::solve(&mut sheet, lattice, CellYarn::new(material, h, plate), seam, bias, *instructions);
             Weaver { lattice, yarn, plate, instructions: *instructions }.solve(&mut sheet, self.last, loom);
         }
         false

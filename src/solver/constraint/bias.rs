@@ -1,0 +1,242 @@
+//! The diagonals of a sheet's cells as strands along the bias, each solved exactly: eight columns side by side, row after
+//! row.
+//!
+//! ```text
+//!   o       o       o            a strand that falls goes on from a column to the next
+//!     \       \                  with each row, one that rises comes the other way
+//!   o   o   o   o   o
+//!         \       \
+//!   o       o       o
+//! ```
+//!
+//! It is the system of [`strand`](super::strand), with what a spring takes over from the one before it lying one lane
+//! beside it. Solved one by one, diagonals are softer than they are by 1 + k h²/m or so: with the light particles of a fine
+//! mesh, several times as soft. Across the strands there is nothing of the kind: diagonals that cross are at right angles.
+//!
+//! Springs pull along the direction that they had before: they carry little, beside threads.
+
+use fearless_simd::{f32x8, prelude::*};
+
+use super::{spring::End, strand::Row, weave::Sheet};
+use crate::solver::{
+    lanes::Block,
+    simd::{Lane, SHORTEST, Vec3x8, lane},
+};
+
+/// Buffers for strands that are being solved.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Bias {
+    /// Of each spring: its right side over the pivot, and the entry of the spring before it in its column over the pivot.
+    rows: Vec<[Lane; 2]>,
+    /// Of the springs of a row, and of the one before.
+    springs: [Vec<Eliminated>; 2],
+    /// What the springs of a row pull with, and those of the next, kg m.
+    pulls: [Vec<Block>; 2],
+    /// What those leave to the springs before them.
+    left: [Vec<Lane>; 2],
+}
+
+/// What the next spring of a strand needs of one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Eliminated {
+    along: Block,
+    factor: Lane,
+    inverse_pivot: Lane,
+    right: Lane,
+}
+
+/// Diagonals of so many `rows`, those of a kind.
+pub(in crate::solver) struct Diagonals<'a> {
+    pub rows: usize,
+    /// Rest lengths of each cell's diagonal, m, and its part of the springs' stiffness: for each eight columns, one entry for
+    /// each row of the lattice, from the first of these rows on.
+    pub rest: &'a [Lane],
+    pub shares: &'a [Lane],
+    /// Rows of the lattice.
+    pub stride: usize,
+    /// k h² and c h of a whole spring, kg.
+    pub spring: [f32; 2],
+}
+
+impl Diagonals<'_> {
+    /// Solves all strands that fall, or all that are `RISING`.
+    #[inline(always)]
+    pub fn solve<S: Simd, const RISING: bool, const DAMPED: bool>(&self, simd: S, sheet: &mut Sheet, bias: &mut Bias) {
+        let packs = sheet.position.len() / self.rows;
+        bias.rows.resize(bias.rows.len().max(sheet.position.len()), Default::default());
+        for springs in &mut bias.springs {
+            springs.clear();
+            springs.resize(packs, Eliminated::default());
+        }
+        for pulls in &mut bias.pulls {
+            pulls.clear();
+            pulls.resize(packs, Block::default());
+        }
+        for left in &mut bias.left {
+            left.clear();
+            left.resize(packs, Lane::default());
+        }
+        for row in 0..self.rows - 1 {
+            self.eliminate::<S, RISING, DAMPED>(simd, sheet, row, bias);
+        }
+        for row in (0..self.rows - 1).rev() {
+            self.substitute::<S, RISING>(simd, sheet, row, bias);
+        }
+        let [_, pulls] = &bias.pulls;
+        for pack in 0..packs {
+            // Nothing ends in the first row.
+            let pull = top_pull::<S, RISING>(simd, pulls, pack);
+            shift(simd, sheet, pack * self.rows, Vec3x8::splat(simd, [0.0; 3]) - pull);
+        }
+    }
+
+    /// Both ends of the springs below a row.
+    #[inline(always)]
+    fn ends<S: Simd, const RISING: bool, const DAMPED: bool>(
+        &self,
+        simd: S,
+        sheet: &Sheet,
+        row: usize,
+        pack: usize,
+    ) -> [End<f32x8<S>>; 2] {
+        let at = pack * self.rows + row;
+        // After the last block comes nobody: there are no springs to it.
+        let next = if at + self.rows < sheet.position.len() { at + self.rows } else { at };
+        if RISING {
+            [ahead::<S, DAMPED>(simd, sheet, at, next), end::<S, DAMPED>(simd, sheet, at + 1)]
+        } else {
+            [end::<S, DAMPED>(simd, sheet, at), ahead::<S, DAMPED>(simd, sheet, at + 1, next + 1)]
+        }
+    }
+
+    #[inline(always)]
+    fn eliminate<S: Simd, const RISING: bool, const DAMPED: bool>(
+        &self,
+        simd: S,
+        sheet: &Sheet,
+        row: usize,
+        bias: &mut Bias,
+    ) {
+        let one = f32x8::splat(simd, 1.0);
+        let [before, after] = &mut bias.springs;
+        for pack in 0..before.len() {
+            let of_cell = pack * self.stride + row;
+            let rest = lane(simd, &self.rest[of_cell]);
+            let share = lane(simd, &self.shares[of_cell]);
+            let [top, bottom] = self.ends::<S, RISING, DAMPED>(simd, sheet, row, pack);
+            let law = [share * self.spring[0], share * self.spring[1]];
+            let lengths = [rest, f32x8::splat(simd, SHORTEST)];
+            let spring = Row::new::<S, DAMPED>(simd, [top, bottom], lengths, law);
+            let last = before_it::<S, RISING>(simd, before, pack);
+            let shared = top.inverse_mass * last.along.dot(spring.along);
+            let over_pivot = shared * last.inverse_pivot;
+            let (lower, upper) = (over_pivot * spring.factor, over_pivot * last.factor);
+            let inverse_pivot = one / (spring.diagonal - lower * (shared * last.factor));
+            let right = spring.right + lower * last.right;
+            bias.rows[pack * self.rows + row] = [(right * inverse_pivot).into(), upper.into()];
+            let Eliminated { along, factor, inverse_pivot: pivot, right: side } = &mut after[pack];
+            spring.along.store(along);
+            (*factor, *pivot, *side) = (spring.factor.into(), inverse_pivot.into(), right.into());
+        }
+        bias.springs.swap(0, 1);
+    }
+
+    /// Finds what the springs below a row pull with, and moves the row below, which then has all that pulls at it.
+    #[inline(always)]
+    fn substitute<S: Simd, const RISING: bool>(&self, simd: S, sheet: &mut Sheet, row: usize, bias: &mut Bias) {
+        let Bias { rows, pulls: [pulls, pulls_below], left: [left, left_below], .. } = bias;
+        for pack in 0..pulls.len() {
+            let [top, bottom] = self.ends::<S, RISING, false>(simd, sheet, row, pack);
+            let [right, upper] = &rows[pack * self.rows + row];
+            let mu = lane(simd, right) + after_it::<S, RISING>(simd, left_below, pack);
+            left[pack] = (lane(simd, upper) * mu).into();
+            ((bottom.position - top.position) * mu).store(&mut pulls[pack]);
+        }
+        for pack in 0..pulls.len() {
+            let here = Vec3x8::load(simd, &pulls[pack]);
+            let from_above = if RISING { here } else { block_before(simd, pulls, pack).behind(here) };
+            let pull = from_above - top_pull::<S, RISING>(simd, pulls_below, pack);
+            shift(simd, sheet, pack * self.rows + row + 1, pull);
+        }
+        bias.pulls.swap(0, 1);
+        bias.left.swap(0, 1);
+    }
+}
+
+#[inline(always)]
+fn end<S: Simd, const DAMPED: bool>(simd: S, sheet: &Sheet, at: usize) -> End<f32x8<S>> {
+    let position = Vec3x8::load(simd, &sheet.position[at]);
+    let previous = if DAMPED { Vec3x8::load(simd, &sheet.previous[at]) } else { position };
+    End { position, previous, inverse_mass: lane(simd, &sheet.inverse_mass[at]) }
+}
+
+/// Those one column further.
+#[inline(always)]
+fn ahead<S: Simd, const DAMPED: bool>(simd: S, sheet: &Sheet, at: usize, next: usize) -> End<f32x8<S>> {
+    let (here, next) = (end::<S, DAMPED>(simd, sheet, at), end::<S, DAMPED>(simd, sheet, next));
+    let position = here.position.ahead(next.position);
+    let previous = if DAMPED { here.previous.ahead(next.previous) } else { position };
+    End { position, previous, inverse_mass: here.inverse_mass.slide::<1>(next.inverse_mass) }
+}
+
+/// The springs that end where those of a pack begin.
+struct Before<S: Simd> {
+    along: Vec3x8<S>,
+    factor: f32x8<S>,
+    inverse_pivot: f32x8<S>,
+    right: f32x8<S>,
+}
+
+#[inline(always)]
+fn before_it<S: Simd, const RISING: bool>(simd: S, row: &[Eliminated], pack: usize) -> Before<S> {
+    let none = Eliminated::default();
+    let here = &row[pack];
+    if RISING {
+        let next = row.get(pack + 1).unwrap_or(&none);
+        Before {
+            along: Vec3x8::load(simd, &here.along).ahead(Vec3x8::load(simd, &next.along)),
+            factor: lane(simd, &here.factor).slide::<1>(lane(simd, &next.factor)),
+            inverse_pivot: lane(simd, &here.inverse_pivot).slide::<1>(lane(simd, &next.inverse_pivot)),
+            right: lane(simd, &here.right).slide::<1>(lane(simd, &next.right)),
+        }
+    } else {
+        let last = if pack > 0 { &row[pack - 1] } else { &none };
+        Before {
+            along: Vec3x8::load(simd, &last.along).behind(Vec3x8::load(simd, &here.along)),
+            factor: lane(simd, &last.factor).slide::<7>(lane(simd, &here.factor)),
+            inverse_pivot: lane(simd, &last.inverse_pivot).slide::<7>(lane(simd, &here.inverse_pivot)),
+            right: lane(simd, &last.right).slide::<7>(lane(simd, &here.right)),
+        }
+    }
+}
+
+/// What the springs that begin where those of a pack end leave to these.
+#[inline(always)]
+fn after_it<S: Simd, const RISING: bool>(simd: S, row: &[Lane], pack: usize) -> f32x8<S> {
+    let here = lane(simd, &row[pack]);
+    let none = f32x8::splat(simd, 0.0);
+    if RISING {
+        (if pack > 0 { lane(simd, &row[pack - 1]) } else { none }).slide::<7>(here)
+    } else {
+        here.slide::<1>(if pack + 1 < row.len() { lane(simd, &row[pack + 1]) } else { none })
+    }
+}
+
+/// What springs pull with at the particles of a pack that they begin at.
+#[inline(always)]
+fn top_pull<S: Simd, const RISING: bool>(simd: S, pulls: &[Block], pack: usize) -> Vec3x8<S> {
+    let here = Vec3x8::load(simd, &pulls[pack]);
+    if RISING { block_before(simd, pulls, pack).behind(here) } else { here }
+}
+
+#[inline(always)]
+fn block_before<S: Simd>(simd: S, blocks: &[Block], pack: usize) -> Vec3x8<S> {
+    if pack > 0 { Vec3x8::load(simd, &blocks[pack - 1]) } else { Vec3x8::splat(simd, [0.0; 3]) }
+}
+
+/// Moves a block by an impulse over h, kg m.
+#[inline(always)]
+fn shift<S: Simd>(simd: S, sheet: &mut Sheet, at: usize, by: Vec3x8<S>) {
+    let place = Vec3x8::load(simd, &sheet.position[at]) + by * lane(simd, &sheet.inverse_mass[at]);
+    place.store(&mut sheet.position[at]);
+}
