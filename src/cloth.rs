@@ -10,7 +10,7 @@ use crate::{
     state::ClothState,
 };
 
-/// How the springs are integrated. Both read the same physical constants.
+/// How a cloth is moved on in time. All three read the same physical constants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothSolver {
@@ -18,7 +18,7 @@ pub enum ClothSolver {
     /// that it takes, stable at any stiffness and time step. For games.
     #[default]
     Strands,
-    /// Extended position-based dynamics, spring by spring: stable as well, and stretched more.
+    /// Extended position-based dynamics, one constraint after the other: stable as well, and stretched more.
     Xpbd,
     /// Forces and symplectic Euler, the textbook form: the most accurate, and many times as costly. It takes the
     /// substeps that stability needs, up to [`Cloth::max_substeps`].
@@ -45,7 +45,7 @@ impl From<ClothSolver> for Method {
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(Fabric, Pins, ClothState, ClothStatus, Transform)]
 pub struct Cloth {
-    /// How the springs are integrated.
+    /// How it is moved on in time.
     pub solver: ClothSolver,
     /// The most that threads are to be stretched, no unit, if their stiffness can hold it: 0.001 to 0.1. What
     /// [`ClothSolver::Strands`] chooses [`substeps`](Self::substeps) and [`levels`](Self::levels) by, where they aren't
@@ -74,8 +74,8 @@ pub struct Cloth {
     pub max_velocity: f32,
     /// Density of the air around in kg/m³. 1.225 at sea level, 0 for a vacuum.
     pub fluid_density: f32,
-    /// Distance in m that the cloth keeps from obstacles beyond its fabric's thickness, 0 or more: the more the larger its
-    /// triangles are, so that no corner of an obstacle shows between its particles.
+    /// Distance in m that the cloth keeps from obstacles beyond its fabric's thickness, 0 or more. 0.002 to 0.02: the more the
+    /// larger its triangles are, so that no corner of an obstacle shows between its particles.
     pub collision_margin: f32,
     /// Which obstacles the cloth meets: those whose [`ClothCollider::layers`](crate::prelude::ClothCollider::layers)
     /// have a bit in common with it.

@@ -22,7 +22,7 @@ use super::Fabric;
 /// # use bevy_drape::prelude::*;
 /// fn setup(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, assets: Res<AssetServer>) {
 ///     commands.spawn((
-///         Mesh3d(meshes.add(ClothGrid::new(1.0, 1.0, 32, 32))),
+///         Mesh3d(meshes.add(ClothGrid::new(1.0, 1.0, 48, 48))),
 ///         Cloth::default(),
 ///         FabricHandle::new(assets.load("fabrics/silk.fabric.ron")),
 ///     ));
