@@ -13,14 +13,14 @@
 //! beside it. Solved one by one, diagonals are softer than they are by 1 + k h²/m or so: with the light particles of a fine
 //! mesh, several times as soft. Across the strands there is nothing of the kind: diagonals that cross are at right angles.
 //!
-//! Springs pull along the direction that they had before: they carry little, beside threads.
+//! As in threads, taut springs pull along the direction that they have after the move.
 
 use fearless_simd::{f32x8, prelude::*};
 
 use super::{spring::End, strand::Row, weave::Sheet};
 use crate::solver::{
     lanes::Block,
-    simd::{Lane, SHORTEST, Vec3x8, lane},
+    simd::{LANES, Lane, SHORTEST, Vec3x8, lane},
 };
 
 /// Buffers for strands that are being solved.
@@ -28,12 +28,23 @@ use crate::solver::{
 pub(in crate::solver) struct Bias {
     /// Of each spring: its right side over the pivot, and the entry of the spring before it in its column over the pivot.
     rows: Vec<[Lane; 2]>,
+    /// Of each particle: its share of the place of the one before it on its strand.
+    shares: Vec<Lane>,
     /// Of the springs of a row, and of the one before.
     springs: [Vec<Eliminated>; 2],
-    /// What the springs of a row pull with, and those of the next, kg m.
-    pulls: [Vec<Block>; 2],
-    /// What those leave to the springs before them.
-    left: [Vec<Lane>; 2],
+    /// Of the springs of a row, and of the one below.
+    pulls: [Vec<Pulling>; 2],
+}
+
+/// What a spring does.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pulling {
+    /// What it pushes its end with where it is pressed together, kg m.
+    push: Block,
+    /// Its tension over its length, times h², kg.
+    tension: Lane,
+    /// What it leaves to the spring before it.
+    left: Lane,
 }
 
 /// What the next spring of a strand needs of one.
@@ -70,24 +81,46 @@ impl Diagonals<'_> {
         }
         for pulls in &mut bias.pulls {
             pulls.clear();
-            pulls.resize(packs, Block::default());
+            pulls.resize(packs, Pulling::default());
         }
-        for left in &mut bias.left {
-            left.clear();
-            left.resize(packs, Lane::default());
-        }
+        bias.shares.resize(bias.shares.len().max(sheet.position.len()), Lane::default());
         for row in 0..self.rows - 1 {
             self.eliminate::<S, RISING, DAMPED>(simd, sheet, row, bias);
         }
-        for row in (0..self.rows - 1).rev() {
+        for row in (0..self.rows).rev() {
             self.substitute::<S, RISING>(simd, sheet, row, bias);
         }
-        let [_, pulls] = &bias.pulls;
-        for pack in 0..packs {
-            // Nothing ends in the first row.
-            let pull = top_pull::<S, RISING>(simd, pulls, pack);
-            shift(simd, sheet, pack * self.rows, Vec3x8::splat(simd, [0.0; 3]) - pull);
+        for row in 1..self.rows {
+            for pack in 0..packs {
+                let at = pack * self.rows + row;
+                let before = self.beside::<S, RISING>(simd, sheet, at - 1, pack);
+                let place = Vec3x8::load(simd, &sheet.position[at]) + before * lane(simd, &bias.shares[at]);
+                place.store(&mut sheet.position[at]);
+            }
         }
+    }
+
+    /// Particles of a row that strands come from, for those of the row below: one column before, or of those that rise, one
+    /// after.
+    #[inline(always)]
+    fn beside<S: Simd, const RISING: bool>(&self, simd: S, sheet: &Sheet, at: usize, pack: usize) -> Vec3x8<S> {
+        let here = Vec3x8::load(simd, &sheet.position[at]);
+        if RISING {
+            here.ahead(Vec3x8::load(simd, &sheet.position[self.next_pack(sheet, at)]))
+        } else {
+            self.last_pack(simd, sheet, at, pack).behind(here)
+        }
+    }
+
+    /// After the last pack comes nobody: there are no springs to it.
+    #[inline(always)]
+    fn next_pack(&self, sheet: &Sheet, at: usize) -> usize {
+        if at + self.rows < sheet.position.len() { at + self.rows } else { at }
+    }
+
+    #[inline(always)]
+    fn last_pack<S: Simd>(&self, simd: S, sheet: &Sheet, at: usize, pack: usize) -> Vec3x8<S> {
+        if pack > 0 { Vec3x8::load(simd, &sheet.position[at - self.rows]) } else { Vec3x8::splat(simd, [0.0; 3]) }
     }
 
     /// Both ends of the springs below a row.
@@ -100,8 +133,7 @@ impl Diagonals<'_> {
         pack: usize,
     ) -> [End<f32x8<S>>; 2] {
         let at = pack * self.rows + row;
-        // After the last block comes nobody: there are no springs to it.
-        let next = if at + self.rows < sheet.position.len() { at + self.rows } else { at };
+        let next = self.next_pack(sheet, at);
         if RISING {
             [ahead::<S, DAMPED>(simd, sheet, at, next), end::<S, DAMPED>(simd, sheet, at + 1)]
         } else {
@@ -141,25 +173,50 @@ impl Diagonals<'_> {
         bias.springs.swap(0, 1);
     }
 
-    /// Finds what the springs below a row pull with, and moves the row below, which then has all that pulls at it.
+    /// Finds what the springs above a row pull with. Then it is known what pulls at the row's particles: leaves their places
+    /// but for their shares of those before them.
     #[inline(always)]
     fn substitute<S: Simd, const RISING: bool>(&self, simd: S, sheet: &mut Sheet, row: usize, bias: &mut Bias) {
-        let Bias { rows, pulls: [pulls, pulls_below], left: [left, left_below], .. } = bias;
-        for pack in 0..pulls.len() {
+        let (none, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let Bias { rows, shares, pulls: [above, below], .. } = bias;
+        for pack in 0..above.len() {
+            let Some(row) = row.checked_sub(1) else {
+                above[pack] = Pulling::default();
+                continue;
+            };
             let [top, bottom] = self.ends::<S, RISING, false>(simd, sheet, row, pack);
             let [right, upper] = &rows[pack * self.rows + row];
-            let mu = lane(simd, right) + after_it::<S, RISING>(simd, left_below, pack);
-            left[pack] = (lane(simd, upper) * mu).into();
-            ((bottom.position - top.position) * mu).store(&mut pulls[pack]);
+            let mu = lane(simd, right) + after_it::<S, RISING>(simd, below, pack);
+            let Pulling { push, tension, left } = &mut above[pack];
+            ((bottom.position - top.position) * mu.max(none)).store(push);
+            *tension = (-mu.min(none)).into();
+            *left = (lane(simd, upper) * mu).into();
         }
-        for pack in 0..pulls.len() {
-            let here = Vec3x8::load(simd, &pulls[pack]);
-            let from_above = if RISING { here } else { block_before(simd, pulls, pack).behind(here) };
-            let pull = from_above - top_pull::<S, RISING>(simd, pulls_below, pack);
-            shift(simd, sheet, pack * self.rows + row + 1, pull);
+        for pack in 0..above.len() {
+            let at = pack * self.rows + row;
+            let (from, to) = around::<S, RISING>(simd, above, below, pack);
+            // The particles that the springs below lead to, and their shares of these.
+            let (mut place_after, mut share_after) = (Vec3x8::splat(simd, [0.0; 3]), none);
+            if row + 1 < self.rows {
+                let here = (Vec3x8::load(simd, &sheet.position[at + 1]), lane(simd, &shares[at + 1]));
+                if RISING {
+                    let last = if pack > 0 { lane(simd, &shares[at + 1 - self.rows]) } else { none };
+                    place_after = self.last_pack(simd, sheet, at + 1, pack).behind(here.0);
+                    share_after = last.slide::<7>(here.1);
+                } else {
+                    let next = self.next_pack(sheet, at) + 1;
+                    place_after = here.0.ahead(Vec3x8::load(simd, &sheet.position[next]));
+                    share_after = here.1.slide::<1>(lane(simd, &shares[next]));
+                }
+            }
+            let w = lane(simd, &sheet.inverse_mass[at]);
+            let pulled = place_after * to.tension + from.push - to.push;
+            let place = Vec3x8::load(simd, &sheet.position[at]) + pulled * w;
+            let inverse = one / (w * (from.tension + to.tension - to.tension * share_after) + one);
+            (place * inverse).store(&mut sheet.position[at]);
+            shares[at] = (w * from.tension * inverse).into();
         }
         bias.pulls.swap(0, 1);
-        bias.left.swap(0, 1);
     }
 }
 
@@ -212,31 +269,48 @@ fn before_it<S: Simd, const RISING: bool>(simd: S, row: &[Eliminated], pack: usi
 
 /// What the springs that begin where those of a pack end leave to these.
 #[inline(always)]
-fn after_it<S: Simd, const RISING: bool>(simd: S, row: &[Lane], pack: usize) -> f32x8<S> {
-    let here = lane(simd, &row[pack]);
+fn after_it<S: Simd, const RISING: bool>(simd: S, row: &[Pulling], pack: usize) -> f32x8<S> {
+    let here = lane(simd, &row[pack].left);
     let none = f32x8::splat(simd, 0.0);
     if RISING {
-        (if pack > 0 { lane(simd, &row[pack - 1]) } else { none }).slide::<7>(here)
+        (if pack > 0 { lane(simd, &row[pack - 1].left) } else { none }).slide::<7>(here)
     } else {
-        here.slide::<1>(if pack + 1 < row.len() { lane(simd, &row[pack + 1]) } else { none })
+        here.slide::<1>(if pack + 1 < row.len() { lane(simd, &row[pack + 1].left) } else { none })
     }
 }
 
-/// What springs pull with at the particles of a pack that they begin at.
+/// Springs that pull at particles.
+struct Pull<S: Simd> {
+    push: Vec3x8<S>,
+    tension: f32x8<S>,
+}
+
+/// Those above the particles of a pack and those below.
 #[inline(always)]
-fn top_pull<S: Simd, const RISING: bool>(simd: S, pulls: &[Block], pack: usize) -> Vec3x8<S> {
-    let here = Vec3x8::load(simd, &pulls[pack]);
-    if RISING { block_before(simd, pulls, pack).behind(here) } else { here }
+fn around<S: Simd, const RISING: bool>(
+    simd: S,
+    above: &[Pulling],
+    below: &[Pulling],
+    pack: usize,
+) -> (Pull<S>, Pull<S>) {
+    if RISING {
+        (pulls_at(simd, &above[pack]), pulls_before(simd, below, pack))
+    } else {
+        (pulls_before(simd, above, pack), pulls_at(simd, &below[pack]))
+    }
 }
 
 #[inline(always)]
-fn block_before<S: Simd>(simd: S, blocks: &[Block], pack: usize) -> Vec3x8<S> {
-    if pack > 0 { Vec3x8::load(simd, &blocks[pack - 1]) } else { Vec3x8::splat(simd, [0.0; 3]) }
+fn pulls_at<S: Simd>(simd: S, pulling: &Pulling) -> Pull<S> {
+    Pull { push: Vec3x8::load(simd, &pulling.push), tension: lane(simd, &pulling.tension) }
 }
 
-/// Moves a block by an impulse over h, kg m.
+/// Those one column before.
 #[inline(always)]
-fn shift<S: Simd>(simd: S, sheet: &mut Sheet, at: usize, by: Vec3x8<S>) {
-    let place = Vec3x8::load(simd, &sheet.position[at]) + by * lane(simd, &sheet.inverse_mass[at]);
-    place.store(&mut sheet.position[at]);
+fn pulls_before<S: Simd>(simd: S, row: &[Pulling], pack: usize) -> Pull<S> {
+    let here = pulls_at(simd, &row[pack]);
+    let last = pulls_at(simd, if pack > 0 { &row[pack - 1] } else { &NOTHING });
+    Pull { push: last.push.behind(here.push), tension: last.tension.slide::<7>(here.tension) }
 }
+
+const NOTHING: Pulling = Pulling { push: [[0.0; LANES]; 3], tension: [0.0; LANES], left: [0.0; LANES] };
