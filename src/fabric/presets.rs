@@ -170,8 +170,8 @@ presets! {
     {
         density: 0.235,
         thickness: 0.000_57,
-        warp_stiffness: 2000.0,
-        weft_stiffness: 1500.0,
+        warp_stiffness: 2400.0,
+        weft_stiffness: 1600.0,
         shear_stiffness: 45.0,
         bending_rigidity: 12e-6,
         friction: 0.45,

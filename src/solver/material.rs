@@ -110,7 +110,7 @@ impl Moduli {
     /// larger K. Infinite where both are equal.
     pub fn most_shear([warp, weft]: [f32; 2]) -> f32 {
         let (smaller, larger) = (warp.min(weft), warp.max(weft));
-        smaller / (1.0 - smaller / larger)
+        smaller / (larger - smaller) * larger
     }
 
     /// Bending rigidity, N·m, and its damping, N·m·s.

@@ -14,9 +14,9 @@ use bevy_drape::prelude::*;
 
 use crate::common::*;
 
-/// A square metre with cells of 50 mm: fine enough for leather, which needs 83 mm, and for nothing softer.
+/// A square metre with cells of 50 mm: fine enough for leather, which needs 52 mm, and for nothing softer.
 const COARSE: ClothGrid = ClothGrid { size: Vec2::ONE, particles: UVec2::splat(21), lying: true };
-/// Cells of 20 mm: fine enough for silk, which needs 24.8 mm.
+/// Cells of 20 mm: fine enough for silk, which needs 22.6 mm.
 const FINE: ClothGrid = ClothGrid { size: Vec2::ONE, particles: UVec2::splat(51), lying: true };
 
 /// What is logged on this thread.
@@ -74,7 +74,7 @@ fn the_warning_names_the_cloth_and_both_lengths() {
     let (cloth, said) = quiet.spawn(COARSE, Fabric::SILK);
     assert_eq!(said.len(), 1, "{said:?}");
     let parts =
-        [&format!("cloth {cloth} has edges of 50.0 mm"), "24.8 mm at most", "finer", "Fabric::bending_rigidity"];
+        [&format!("cloth {cloth} has edges of 50.0 mm"), "22.6 mm at most", "finer", "Fabric::bending_rigidity"];
     assert!(parts.iter().all(|part| said[0].contains(part)), "{said:?}");
     assert_eq!(quiet.run(60), Vec::<String>::new(), "once");
 }
@@ -106,7 +106,7 @@ fn plain_springs_are_not_told_of_until_they_go() {
     *get_mut::<Fabric>(&mut quiet.app, cloth) = Fabric::DENIM;
     assert_eq!(quiet.run(3), Vec::<String>::new());
     quiet.app.world_mut().entity_mut(cloth).remove::<ClothSprings>();
-    assert!(quiet.run(3)[0].contains("edges of 50.0 mm in the mean, and its fabric needs them to be 43.4 mm"));
+    assert!(quiet.run(3)[0].contains("edges of 50.0 mm in the mean, and its fabric needs them to be 34.9 mm"));
 }
 
 #[test]

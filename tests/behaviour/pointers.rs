@@ -414,6 +414,8 @@ fn a_camera_that_goes_leaves_the_hold_where_it_is() {
 #[test]
 fn a_jerk_of_the_mouse_keeps_the_cloth_in_one_piece() {
     let mut app = with_pointer();
+    // A cloth that is flat to the last bit and pulled within its plane couldn't fold.
+    app.world_mut().spawn(Wind { velocity: Vec3::Z * 0.5, ..default() });
     let cloth = curtain(&mut app);
     let at = press_at(&mut app, Vec3::new(0.0, -0.4, 0.0));
     for side in [-1.0, 1.0, -1.0, 1.0] {
@@ -424,7 +426,7 @@ fn a_jerk_of_the_mouse_keeps_the_cloth_in_one_piece() {
     release(&mut app);
     run(&mut app, 240);
     let strain = state(&app, cloth).strain();
-    assert!(strain.mean < 0.02 && strain.largest < 0.3, "{strain:?}");
+    assert!(strain.mean < 0.005 && strain.largest < 0.1, "{strain:?}");
     assert_eq!(app.world().resource::<Heard>().reset, []);
 }
 

@@ -44,9 +44,9 @@ fn presets_differ_as_their_fabrics_do() {
     let [jersey, cotton, denim, tablecloth, silk, wool, leather, rubber] = Fabric::PRESETS.map(|preset| preset.fabric);
     assert_eq!(silk, Fabric::SILK, "they are in the order of their names here");
     let all = |order: [&Fabric; 8]| order.map(Clone::clone);
-    let by_rigidity = all([&silk, &wool, &jersey, &cotton, &tablecloth, &denim, &rubber, &leather]);
+    let by_rigidity = all([&silk, &jersey, &tablecloth, &wool, &cotton, &denim, &rubber, &leather]);
     assert!(rising(|fabric| fabric.bending_rigidity, &by_rigidity));
-    let by_stiffness = all([&jersey, &wool, &rubber, &silk, &denim, &cotton, &tablecloth, &leather]);
+    let by_stiffness = all([&jersey, &rubber, &wool, &silk, &denim, &cotton, &tablecloth, &leather]);
     assert!(rising(|fabric| fabric.weft_stiffness, &by_stiffness));
     let by_density = all([&silk, &tablecloth, &cotton, &jersey, &wool, &denim, &leather, &rubber]);
     assert!(rising(|fabric| fabric.density, &by_density));
