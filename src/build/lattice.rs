@@ -214,7 +214,7 @@ pub(super) fn weave(rest: &[Vec3], rectangle: &Rectangle, springs: &[(SpringKind
         springs.get(numbers[row * columns + column][known] as usize).map(|(_, spring)| *spring)
     };
     let rows = particles.len() / columns;
-    let grain = grain_of_columns((0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))), &spring);
+    let grain = grain_of_columns((0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))), spring);
     let plate = Plate::new(rest, rectangle);
     let link = |at: (usize, usize), way: (isize, isize)| {
         let Spring { rest, share: [warp, weft, shear], .. } = spring(at, way).unwrap_or_default();

@@ -1,6 +1,13 @@
 //! Sheets bend as a plate of their rigidity does.
 
-use bevy::{math::Vec3A, mesh::VertexAttributeValues, prelude::*};
+use bevy::{
+    math::{
+        Vec3A,
+        ops::{cos, sin},
+    },
+    mesh::VertexAttributeValues,
+    prelude::*,
+};
 use bevy_drape::{
     prelude::{ClothGrid, Fabric},
     solver::{Bend, Material, Method, measure::energy},
@@ -122,8 +129,7 @@ fn a_plate_bends_as_easily_in_any_direction() {
 
 #[test]
 fn what_is_curved_at_rest_keeps_its_form() {
-    let roll =
-        |radius: f32| move |p: Vec3| Vec3::new(radius * (p.x / radius).sin(), p.y, radius * (p.x / radius).cos());
+    let roll = |radius: f32| move |p: Vec3| Vec3::new(radius * sin(p.x / radius), p.y, radius * cos(p.x / radius));
     let fabric = Fabric { bending_rigidity: 1e-3, ..Fabric::default() };
     for mesh in [
         shaped(ClothGrid::new(0.4, 0.2, 37, 19), roll(0.15)),
@@ -131,7 +137,7 @@ fn what_is_curved_at_rest_keeps_its_form() {
         // A tube: its last column is its first.
         shaped(ClothGrid::new(core::f32::consts::TAU * 0.1, 0.2, 33, 17), roll(0.1)),
         // Pleats.
-        shaped(ClothGrid::new(0.4, 0.2, 65, 17), |p| Vec3::new(p.x, p.y, 0.01 * (p.x * 60.0).sin())),
+        shaped(ClothGrid::new(0.4, 0.2, 65, 17), |p| Vec3::new(p.x, p.y, 0.01 * sin(p.x * 60.0))),
     ] {
         let bed = Bed::new(mesh.clone(), bare(fabric.clone()));
         assert!(bed.topology.lattice.as_ref().is_some_and(|lattice| lattice.curl.is_some()));

@@ -32,7 +32,7 @@ fn strewn(length: f32, width: f32, cell: f32) -> (Vec<Vec2>, Vec<u32>) {
 }
 
 /// The mesh of a strip, put into space. The warp is along its length.
-fn mesh(&(ref points, ref indices): &(Vec<Vec2>, Vec<u32>), place: impl Fn(Vec2) -> Vec3) -> Mesh {
+fn mesh((points, indices): &(Vec<Vec2>, Vec<u32>), place: impl Fn(Vec2) -> Vec3) -> Mesh {
     let positions: Vec<[f32; 3]> = points.iter().map(|&p| place(p).to_array()).collect();
     let uvs: Vec<[f32; 2]> = points.iter().map(|p| [p.y, p.x]).collect();
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
@@ -203,7 +203,10 @@ fn springs_that_are_alike_take_no_notice_of_faces_and_bends() {
         let mut bed = Bed { method, ..bed }.pinned([0]);
         let mut without = bed.clone();
         let Topology { faces, face_batches, bends, bend_batches, .. } = &mut without.topology;
-        (faces.clear(), face_batches.clear(), bends.clear(), bend_batches.clear());
+        faces.clear();
+        face_batches.clear();
+        bends.clear();
+        bend_batches.clear();
         bed.run(0.2);
         without.run(0.2);
         assert_eq!(bits(&bed.particles), bits(&without.particles), "{method:?}");
@@ -221,7 +224,9 @@ fn all_instructions_give_the_same_bits_and_nothing_is_allocated() {
             bed.run(0.5);
             plain.run(0.5);
             assert_eq!(bits(&bed.particles), bits(&plain.particles));
-            let memory = allocation_counter::measure(|| drop(bed.step(1.0 / 60.0)));
+            let memory = allocation_counter::measure(|| {
+                bed.step(1.0 / 60.0);
+            });
             assert_eq!(memory.count_total, 0);
         }
     }

@@ -151,7 +151,7 @@ impl Diagonals<'_> {
     ) {
         let one = f32x8::splat(simd, 1.0);
         let [before, after] = &mut bias.springs;
-        for pack in 0..before.len() {
+        for (pack, after) in after.iter_mut().enumerate() {
             let of_cell = pack * self.stride + row;
             let rest = lane(simd, &self.rest[of_cell]);
             let share = lane(simd, &self.shares[of_cell]);
@@ -166,7 +166,7 @@ impl Diagonals<'_> {
             let inverse_pivot = one / (spring.diagonal - lower * (shared * last.factor));
             let right = spring.right + lower * last.right;
             bias.rows[pack * self.rows + row] = [(right * inverse_pivot).into(), upper.into()];
-            let Eliminated { along, factor, inverse_pivot: pivot, right: side } = &mut after[pack];
+            let Eliminated { along, factor, inverse_pivot: pivot, right: side } = after;
             spring.along.store(along);
             (*factor, *pivot, *side) = (spring.factor.into(), inverse_pivot.into(), right.into());
         }

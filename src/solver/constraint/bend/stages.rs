@@ -130,7 +130,7 @@ mod tests {
             for i in 0..=1000 {
                 let rate = i as f32 / 1000.0 * stages.most();
                 let left = left(stages, rate);
-                assert!(left <= 1.0 && left >= -1.01 / REDUCTION, "{count} stages, {rate}: {left}");
+                assert!((-1.01 / REDUCTION..=1.0).contains(&left), "{count} stages, {rate}: {left}");
                 assert!(rate < 2.0 || left <= 1.01 / REDUCTION, "{count} stages, {rate}: {left}");
             }
         }
