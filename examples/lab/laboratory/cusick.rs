@@ -12,6 +12,7 @@ use fastrand::Rng;
 use super::{
     Extent,
     bed::{self, Bed, GRAVITY, bare},
+    literature::{PUBLISHED, Published},
     mesh::{self, Kind},
     record::{Case, Curve, Measurement, Outcome},
     shadow,
@@ -24,7 +25,7 @@ const RADIUS: f64 = 0.15;
 const SUPPORT: f64 = 0.09;
 
 /// How near a published value it has to be.
-const PUBLISHED: f64 = 0.10;
+const AS_PUBLISHED: f64 = 0.10;
 
 /// How near to itself on a finer mesh and with more substeps.
 const CONVERGED: f64 = 0.05;
@@ -34,18 +35,6 @@ const ROUGHNESS: f32 = 1e-4;
 
 /// Edges along the radius where nothing else is said.
 const EDGES: u32 = 20;
-
-/// Drape coefficients of such fabrics in the literature, %.
-const LITERATURE: [(&str, Option<f64>); 8] = [
-    ("cotton_jersey", None),
-    ("cotton_woven", None),
-    ("denim", None),
-    ("polyester_tablecloth", None),
-    ("silk", None),
-    ("wool_flannel", None),
-    ("leather", None),
-    ("rubber", None),
-];
 
 pub fn run(extent: Extent) -> Outcome {
     let mut outcome = Outcome::default();
@@ -62,19 +51,23 @@ pub fn run(extent: Extent) -> Outcome {
             if kind == Kind::Grid {
                 found.push((bending_length(&fabric), line.measured));
             }
-            let published = LITERATURE.iter().find(|(other, _)| *other == name).and_then(|(_, value)| *value);
-            outcome.measurements.push(match published {
-                Some(value) => Measurement { expected: Some(value), ..line.of(value).within(PUBLISHED) },
-                None => line,
-            });
+            outcome.measurements.push(line);
         }
         outcome.curves.push(Curve { plot: NAME, series: kind.name().into(), is_expected: false, points, names });
     }
     outcome.measurements.push(order(&found, edges));
     if extent == Extent::Full {
+        outcome.measurements.extend(PUBLISHED.iter().map(against_paper));
         converge(&mut outcome);
     }
     outcome
+}
+
+/// A fabric of a paper, with what was measured of it.
+fn against_paper(published: &Published) -> Measurement {
+    let case = Case { fabric: published.name, mesh: Kind::Grid.name(), n: EDGES, substeps: Some(8), ..Case::default() };
+    let line = coefficient(&published.fabric(), Kind::Grid, case);
+    Measurement { expected: Some(published.coefficient), ..line.of(published.coefficient).within(AS_PUBLISHED) }
 }
 
 /// c³ = B / (density g): what a cloth's folds are measured by, m.

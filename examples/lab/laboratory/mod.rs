@@ -13,6 +13,7 @@ mod cusick;
 mod elastica;
 mod energy;
 mod fall;
+mod literature;
 pub mod mesh;
 mod pendulum;
 mod pull;
@@ -48,6 +49,9 @@ const EFFORTS: [(Method, Option<u32>); 6] = [
 
 /// Those of the tests.
 const BRIEF: [(Method, Option<u32>); 2] = [(Method::Strands, Some(8)), (Method::Explicit, None)];
+
+/// The same on triangles, which are solved one after the other.
+const BRIEF_OF_TRIANGLES: [(Method, Option<u32>); 2] = [(Method::Strands, Some(128)), (Method::Explicit, None)];
 
 /// A kind of measurement.
 pub struct Experiment {

@@ -20,7 +20,7 @@ const NAME: &str = "pull";
 const LINEAR: f64 = 0.02;
 
 /// On grids where it isn't: beyond a few per cent, springs and threads turn as the strip gets narrower.
-const STIFFENING: f64 = 0.05;
+const STIFFENING: f64 = 0.06;
 
 /// Without rows and columns.
 const DELAUNAY: f64 = 0.10;
@@ -34,9 +34,14 @@ const LARGE: [f64; 5] = [0.02, 0.05, 0.1, 0.15, 0.2];
 pub fn run(extent: Extent) -> Outcome {
     let mut outcome = Outcome::default();
     let fabrics = ["cotton_woven", "denim", "cotton_jersey"];
-    let efforts = if extent == Extent::Brief { &BRIEF[..] } else { &EFFORTS };
     for (name, fabric) in bed::presets().filter(|(name, _)| fabrics.contains(name)) {
         for kind in [Kind::Grid, Kind::Delaunay] {
+            // With few substeps only threads that carry nearly all of it are as stiff as they are.
+            let efforts = match (extent, kind, name) {
+                (Extent::Full, ..) => &EFFORTS[..],
+                (Extent::Brief, Kind::Grid, "cotton_woven") => &BRIEF,
+                (Extent::Brief, ..) => &[(Method::Explicit, None)],
+            };
             for (&(method, substeps), direction) in efforts.iter().flat_map(|e| [(e, "warp"), (e, "weft")]) {
                 let case = Case { fabric: name, mesh: kind.name(), n: 16, substeps, direction, method };
                 let strip = Strip { kind, cells: case.n, cell: 0.01, cells_across: 8, direction };

@@ -7,7 +7,7 @@ use bevy::math::{DMat2, DVec2, Vec3A};
 use bevy_drape::prelude::Fabric;
 
 use super::{
-    BRIEF, EFFORTS, Extent,
+    BRIEF, BRIEF_OF_TRIANGLES, EFFORTS, Extent,
     bed::{self, Bed, GRAVITY, bare},
     mesh::{Kind, Strip},
     record::{Case, Measurement, Outcome},
@@ -21,11 +21,15 @@ const ANGLE: f64 = core::f64::consts::PI / 180.0;
 pub fn run(extent: Extent) -> Outcome {
     let fabrics = ["cotton_woven", "denim", "cotton_jersey", "silk", "leather"];
     let fabrics = if extent == Extent::Brief { &fabrics[..3] } else { &fabrics };
-    let efforts = if extent == Extent::Brief { &BRIEF[..] } else { &EFFORTS };
     let mut measurements = Vec::new();
     for (name, fabric) in bed::presets().filter(|(name, _)| fabrics.contains(name)) {
-        for &(method, substeps) in efforts {
-            for kind in [Kind::Grid, Kind::Delaunay] {
+        for kind in [Kind::Grid, Kind::Delaunay] {
+            let efforts = match (extent, kind) {
+                (Extent::Full, _) => &EFFORTS[..],
+                (Extent::Brief, Kind::Delaunay) => &BRIEF_OF_TRIANGLES,
+                (Extent::Brief, _) => &BRIEF,
+            };
+            for &(method, substeps) in efforts {
                 let case = Case { fabric: name, mesh: kind.name(), n: 12, substeps, method, ..Case::default() };
                 measurements.push(shear(kind, &fabric, case));
             }
