@@ -17,3 +17,4 @@ pub mod spring;
 pub(super) mod strand;
 pub mod tether;
 pub(super) mod weave;
+pub(super) mod yarn;

@@ -6,7 +6,8 @@ use super::{
     beads::Beads,
     law::{AnyThreads, Laws},
     strand::{Pack, Rows, Springs},
-    weave::{Loom, Yarn},
+    weave::Loom,
+    yarn::Yarn,
 };
 use crate::solver::{
     Braid,

@@ -22,7 +22,8 @@ use super::{
     law::{Pull, Scaled},
     plate::Plate,
     tether::{self, PinPlaces, TetherBlock},
-    weave::{self, Last, Loom, Sheet, Weaver, Yarn},
+    weave::{self, Last, Loom, Sheet, Weaver},
+    yarn::Yarn,
 };
 use crate::solver::{
     Lanes, Level, LevelPass, Tethers,

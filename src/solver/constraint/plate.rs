@@ -2,11 +2,15 @@
 
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
-use super::{curvature::Factor, weave::blocks_across};
+use super::{
+    curvature::{self, Factor},
+    weave::{Loom, blocks_across, take},
+    yarn::Yarn,
+};
 use crate::solver::{
     Lanes, Lattice,
     lanes::Block,
-    lattice::Curl,
+    lattice::{Curl, Threads},
     simd::{Instructions, LANES, SHORTEST, Vec3x8},
 };
 
@@ -145,6 +149,40 @@ impl Places<'_> {
         is_last[last % LANES] = 1.0;
         let is_last = f32x8::simd_from(simd, is_last).simd_gt(f32x8::splat(simd, 0.0));
         at_end.or(is_last, towards)
+    }
+}
+
+/// Works out what the bends of a lattice have in common in all substeps. Only the threads of a sheet have any.
+pub(in crate::solver) fn prepare(
+    plate: &mut Plate,
+    lattice: &Lattice,
+    yarn: Yarn,
+    lanes: &mut Lanes,
+    loom: &mut Loom,
+    instructions: Instructions,
+) {
+    let Yarn::Sheet { rigidity: Some(rigidity), .. } = yarn else { return };
+    plate.rest.turn(lattice, lanes, instructions);
+    let (order, level) = (lattice.order(), instructions.level());
+    let Threads { nodes, count, curvature: weights, .. } = &lattice.along_columns;
+    plate.columns.resize(weights.len(), Factor::default());
+    loom.make_room(*nodes);
+    for (first, factors) in plate.columns.chunks_exact_mut(*nodes).enumerate() {
+        for band in order.bands() {
+            take(lanes.band(band).inverse_mass, band, *nodes, first..first + 1, &mut loom.inverse_mass);
+        }
+        let (masses, weights) = (&loom.inverse_mass, &weights[first * nodes..]);
+        dispatch!(level, simd => {
+            curvature::factorize(simd, *count, masses, weights, rigidity, factors)
+        });
+    }
+    let Threads { nodes, count, curvature: weights, .. } = &lattice.along_rows;
+    plate.rows.resize(weights.len(), Factor::default());
+    let masses = lanes.row_masses.chunks_exact(*nodes).zip(weights.chunks_exact(*nodes));
+    for ((masses, weights), factors) in masses.zip(plate.rows.chunks_exact_mut(*nodes)) {
+        dispatch!(level, simd => {
+            curvature::factorize(simd, *count, masses, weights, rigidity, factors)
+        });
     }
 }
 

@@ -8,13 +8,14 @@ use core::ops::Range;
 use fearless_simd::{dispatch, f32x8, f32x16, prelude::*};
 
 use super::{
-    curvature::{self, Bends, Factor},
-    law::{Grading, Laws, Pull, Scaled, SheetThreads},
+    curvature::{Bends, Factor},
+    law::{Laws, Scaled, SheetThreads},
     plate::{Plate, from_pack},
     strand::{Pack, Rows, Springs},
+    yarn::Yarn,
 };
 use crate::solver::{
-    Anchor, Elasticity, Lanes, Lattice, Material, SpringKind,
+    Anchor, Lattice,
     lanes::Block,
     lattice::Threads,
     order::{Band, Order},
@@ -61,59 +62,6 @@ impl Loom {
             blocks.resize(blocks.len().max(count), Block::default());
         }
         self.inverse_mass.resize(self.inverse_mass.len().max(count), Lane::default());
-    }
-}
-
-/// What threads are made of.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::solver) enum Yarn {
-    /// Springs that are alike.
-    Alike {
-        stretch: Scaled,
-        /// Between every other node. None where nothing bends.
-        bend: Option<Scaled>,
-    },
-    /// Springs of a level, which only pull.
-    Pulling(Pull),
-    /// The threads of a sheet.
-    Sheet {
-        /// By [`Grain::index`](crate::solver::Grain::index).
-        stretch: [Grading; 2],
-        /// B h² and its damping. None where nothing bends.
-        rigidity: Option<Scaled>,
-    },
-}
-
-impl Yarn {
-    pub fn new(material: &Material, h: f32) -> Self {
-        match &material.elasticity {
-            Elasticity::Springs(constants) => {
-                let scaled = |kind: SpringKind| Scaled::new(constants[kind.index()], h);
-                let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
-                Self::Alike { stretch: scaled(SpringKind::Structural), bend }
-            }
-            Elasticity::Moduli(moduli) => Self::Sheet {
-                stretch: Grading::both(moduli, h),
-                rigidity: Some(Scaled::new(moduli.rigidity(), h)).filter(Scaled::acts),
-            },
-        }
-    }
-
-    /// Whether it needs to know where the particles were before the substep.
-    pub fn is_damped(&self) -> bool {
-        let is_bend_damped = match self {
-            Self::Alike { bend, .. } | Self::Sheet { rigidity: bend, .. } => bend.is_some_and(|bend| bend.c > 0.0),
-            Self::Pulling(_) => false,
-        };
-        is_bend_damped || self.is_stretch_damped()
-    }
-
-    fn is_stretch_damped(&self) -> bool {
-        match self {
-            Self::Alike { stretch, bend } => stretch.c > 0.0 || bend.is_some_and(|bend| bend.c > 0.0),
-            Self::Pulling(_) => false,
-            Self::Sheet { stretch: [warp, _], .. } => warp.damping > 0.0,
-        }
     }
 }
 
@@ -300,42 +248,8 @@ impl Weaver<'_> {
     }
 }
 
-/// Works out what the bends of a lattice have in common in all substeps. Only the threads of a sheet have any.
-pub(in crate::solver) fn prepare_bends(
-    lattice: &Lattice,
-    yarn: Yarn,
-    lanes: &mut Lanes,
-    loom: &mut Loom,
-    plate: &mut Plate,
-    instructions: Instructions,
-) {
-    let Yarn::Sheet { rigidity: Some(rigidity), .. } = yarn else { return };
-    plate.rest.turn(lattice, lanes, instructions);
-    let (order, level) = (lattice.order(), instructions.level());
-    let Threads { nodes, count, curvature: weights, .. } = &lattice.along_columns;
-    plate.columns.resize(weights.len(), Factor::default());
-    loom.make_room(*nodes);
-    for (first, factors) in plate.columns.chunks_exact_mut(*nodes).enumerate() {
-        for band in order.bands() {
-            take(lanes.band(band).inverse_mass, band, *nodes, first..first + 1, &mut loom.inverse_mass);
-        }
-        let (masses, weights) = (&loom.inverse_mass, &weights[first * nodes..]);
-        dispatch!(level, simd => {
-            curvature::factorize(simd, *count, masses, weights, rigidity, factors)
-        });
-    }
-    let Threads { nodes, count, curvature: weights, .. } = &lattice.along_rows;
-    plate.rows.resize(weights.len(), Factor::default());
-    let masses = lanes.row_masses.chunks_exact(*nodes).zip(weights.chunks_exact(*nodes));
-    for ((masses, weights), factors) in masses.zip(plate.rows.chunks_exact_mut(*nodes)) {
-        dispatch!(level, simd => {
-            curvature::factorize(simd, *count, masses, weights, rigidity, factors)
-        });
-    }
-}
-
 /// Takes a band's part of some packs of columns to where whole columns stand one after the other.
-fn take<T: Copy>(from: &[T], band: Band, rows: usize, packs: Range<usize>, to: &mut [T]) {
+pub(super) fn take<T: Copy>(from: &[T], band: Band, rows: usize, packs: Range<usize>, to: &mut [T]) {
     let columns = from.chunks_exact(band.rows).skip(packs.start).take(packs.len());
     for (column, taken) in columns.zip(to.chunks_exact_mut(rows)) {
         taken[band.first..][..band.rows].copy_from_slice(column);

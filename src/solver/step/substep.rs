@@ -12,8 +12,9 @@ use crate::solver::{
         law::Scaled,
         level::LevelRun,
         loose::Loose,
-        tether,
-        weave::{self, Last, Weaver, Yarn},
+        plate, tether,
+        weave::{self, Last, Weaver},
+        yarn::Yarn,
     },
     explicit,
     force::wind,
@@ -61,7 +62,7 @@ impl Substep<'_> {
         if let Some(lattice) = self.topology.lattice.as_ref().filter(|_| self.ctx.method == Method::Strands) {
             let Scratch { lanes, plate, bench, instructions, .. } = &mut *scratch;
             let yarn = Yarn::new(&self.ctx.material, self.h);
-            weave::prepare_bends(lattice, yarn, lanes, &mut bench.loom, plate, *instructions);
+            plate::prepare(plate, lattice, yarn, lanes, &mut bench.loom, *instructions);
         }
         if let Some(run) = self.levels(scratch) {
             scratch.levels.fit(&run, &scratch.lanes);

@@ -1,0 +1,58 @@
+//! What threads are made of, scaled to a substep.
+
+use super::law::{Grading, Pull, Scaled};
+use crate::solver::{Elasticity, Material, SpringKind};
+
+/// What threads are made of.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) enum Yarn {
+    /// Springs that are alike.
+    Alike {
+        stretch: Scaled,
+        /// Between every other node. None where nothing bends.
+        bend: Option<Scaled>,
+    },
+    /// Springs of a level, which only pull.
+    Pulling(Pull),
+    /// The threads of a sheet.
+    Sheet {
+        /// By [`Grain::index`](crate::solver::Grain::index).
+        stretch: [Grading; 2],
+        /// B h² and its damping. None where nothing bends.
+        rigidity: Option<Scaled>,
+    },
+}
+
+impl Yarn {
+    pub fn new(material: &Material, h: f32) -> Self {
+        match &material.elasticity {
+            Elasticity::Springs(constants) => {
+                let scaled = |kind: SpringKind| Scaled::new(constants[kind.index()], h);
+                let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
+                Self::Alike { stretch: scaled(SpringKind::Structural), bend }
+            }
+            Elasticity::Moduli(moduli) => Self::Sheet {
+                stretch: Grading::both(moduli, h),
+                rigidity: Some(Scaled::new(moduli.rigidity(), h)).filter(Scaled::acts),
+            },
+        }
+    }
+
+    /// Whether it needs to know where the particles were before the substep.
+    pub fn is_damped(&self) -> bool {
+        let is_bend_damped = match self {
+            Self::Alike { bend, .. } | Self::Sheet { rigidity: bend, .. } => bend.is_some_and(|bend| bend.c > 0.0),
+            Self::Pulling(_) => false,
+        };
+        is_bend_damped || self.is_stretch_damped()
+    }
+
+    /// The same for stretch alone.
+    pub fn is_stretch_damped(&self) -> bool {
+        match self {
+            Self::Alike { stretch, bend } => stretch.c > 0.0 || bend.is_some_and(|bend| bend.c > 0.0),
+            Self::Pulling(_) => false,
+            Self::Sheet { stretch: [warp, _], .. } => warp.damping > 0.0,
+        }
+    }
+}
