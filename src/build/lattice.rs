@@ -185,9 +185,9 @@ const WAYS: [(SpringKind, (isize, isize)); 6] = [
 /// No spring.
 const NONE: u32 = u32::MAX;
 
-/// The lattice of the particles of a rectangle, numbered row by row and at `rest` (m), and whether each of `springs` is on
-/// it.
-pub(super) fn weave(rest: &[Vec3], rectangle: &Rectangle, springs: &[(SpringKind, Spring)]) -> (Lattice, Vec<bool>) {
+/// The lattice of the particles of a rectangle, numbered row by row, which bend as a `plate`, and whether each of `springs`
+/// is on it.
+pub(super) fn weave(rectangle: &Rectangle, plate: &Plate, springs: &[(SpringKind, Spring)]) -> (Lattice, Vec<bool>) {
     let Rectangle { columns, closed, particles } = rectangle;
     let (columns, closed) = (*columns, *closed);
     let place = |particle: u32| (particle as usize / columns, particle as usize % columns);
@@ -215,7 +215,6 @@ pub(super) fn weave(rest: &[Vec3], rectangle: &Rectangle, springs: &[(SpringKind
     };
     let rows = particles.len() / columns;
     let grain = grain_of_columns((0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))), spring);
-    let plate = Plate::new(rest, rectangle);
     let link = |at: (usize, usize), way: (isize, isize)| {
         let Spring { rest, share: [warp, weft, shear], .. } = spring(at, way).unwrap_or_default();
         let (row, column) = at;

@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// Corners of the triangles of a mesh that is built at once, at most. A grid of 70 x 70 vertices has so many and takes
-/// 3 to 5 ms, an irregular mesh twice that: the longest that a frame can spare.
+/// some 10 ms, an irregular mesh twice that: the longest that a frame can spare.
 const MOST_AT_ONCE: usize = 30_000;
 
 /// What all cloths of one mesh in one rotation and scale have in common.

@@ -23,48 +23,114 @@ pub(super) const FLAT: f32 = 1e-3;
 /// Where two weights stand in a [`Bend`] along a thread: of the particle before and of that after.
 pub(super) const ENDS: [usize; 2] = [0, 1];
 
-/// Particles in rows and columns, numbered row by row, where they are at rest.
-pub(super) struct Plate<'a> {
-    rest: &'a [Vec3],
+/// The bends of particles in rows and columns, numbered row by row.
+pub(super) struct Plate {
     rows: usize,
     columns: usize,
     closed: bool,
+    /// Of the row in each particle, of the column, and the twist of the cell that begins there.
+    along_rows: Vec<Option<Bend>>,
+    along_columns: Vec<Option<Bend>>,
+    twists: Vec<Option<Bend>>,
 }
 
-impl<'a> Plate<'a> {
-    pub fn new(rest: &'a [Vec3], rectangle: &Rectangle) -> Self {
+impl Plate {
+    /// Those of particles at `rest`, m.
+    pub fn new(rest: &[Vec3], rectangle: &Rectangle) -> Self {
         let columns = rectangle.columns;
-        Self { rest, rows: rest.len() / columns, columns, closed: rectangle.closed }
+        let (rows, closed) = (rest.len() / columns, rectangle.closed);
+        let mut surface = Surface { rest, rows, columns, closed, areas: Vec::new() };
+        let places = || (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+        surface.areas = places().map(|at| surface.measure(at)).collect();
+        Self {
+            rows,
+            columns,
+            closed,
+            along_rows: places().map(|at| surface.along_row(at)).collect(),
+            along_columns: places().map(|at| surface.along_column(at)).collect(),
+            twists: places().map(|at| surface.twist(at)).collect(),
+        }
     }
 
     /// All bends, and whether each is within the lattice: all but those across the seam of a tube.
     pub fn bends(&self) -> impl Iterator<Item = (Bend, bool)> {
-        let places = || (0..self.rows).flat_map(|row| (0..self.columns).map(move |column| (row, column)));
-        let is_inner = |column: usize| column > 0 && column + 1 < self.columns;
-        let along_rows = places().filter_map(move |at| Some((self.along_row(at)?, is_inner(at.1))));
-        let along_columns = places().filter_map(|at| Some((self.along_column(at)?, true)));
-        let twists = places().filter_map(|at| Some((self.twist(at)?, at.1 + 1 < self.columns)));
+        let columns = self.columns;
+        let is_inner = move |i: usize| i % columns > 0 && i % columns + 1 < columns;
+        let along_rows = self.along_rows.iter().enumerate().filter_map(move |(i, bend)| Some(((*bend)?, is_inner(i))));
+        let along_columns = self.along_columns.iter().filter_map(|bend| Some(((*bend)?, true)));
+        let twists = self.twists.iter().enumerate();
+        let twists = twists.filter_map(move |(i, bend)| Some(((*bend)?, i % columns + 1 < columns)));
         along_rows.chain(along_columns).chain(twists)
     }
 
     /// The bend of a row in one of its particles.
     pub fn along_row(&self, (row, column): (usize, usize)) -> Option<Bend> {
-        let (before, after) = (self.left((row, column))?, self.right((row, column))?);
-        self.along(
-            [before, (row, column), after],
-            if row + 1 < self.rows { (row + 1, column) } else { (row - 1, column) },
-        )
+        self.along_rows[row * self.columns + column]
     }
 
     /// The bend of a column in one of its particles.
     pub fn along_column(&self, (row, column): (usize, usize)) -> Option<Bend> {
+        self.along_columns[row * self.columns + column]
+    }
+
+    /// The twist of the cell that begins at a particle.
+    pub fn twist(&self, (row, column): (usize, usize)) -> Option<Bend> {
+        self.twists[row * self.columns + column]
+    }
+
+    /// What bends are at rest, for the lattice. None where all is flat.
+    pub fn curl(&self) -> Option<Curl> {
+        if self.bends().all(|(bend, _)| bend.rest == [0.0; 3]) {
+            return None;
+        }
+        let of = |find: &dyn Fn((usize, usize)) -> Option<Bend>, is_turned: &dyn Fn((usize, usize)) -> bool| {
+            let at = |(row, column): (usize, usize)| {
+                let is_inside = row < self.rows && column < self.columns;
+                let rest = is_inside.then(|| find((row, column))).flatten().map_or([0.0; 3], |bend| bend.rest);
+                // The lattice looks for a thread's side always after it, where a bend at the border looks before.
+                let [x, y, z] = rest;
+                if is_turned((row, column)) { [x, -y, -z] } else { rest }
+            };
+            let blocks = (0..self.columns).step_by(LANES).flat_map(|first| (0..self.rows).map(move |row| (row, first)));
+            let block = |(row, first): (usize, usize)| {
+                [0, 1, 2].map(|axis| -> Lane { core::array::from_fn(|l| at((row, first + l))[axis]) })
+            };
+            blocks.map(block).collect::<Vec<_>>()
+        };
+        let is_inner = |(_, column): (usize, usize)| column > 0 && column + 1 < self.columns;
+        let curl = Curl {
+            along_rows: of(&|at| self.along_row(at).filter(|_| is_inner(at)), &|(row, _)| row + 1 == self.rows),
+            along_columns: of(&|at| self.along_column(at), &|(_, column)| !self.closed && column + 1 == self.columns),
+            twist: of(&|at| self.twist(at).filter(|_| at.1 + 1 < self.columns), &|_| false),
+        };
+        Some(curl)
+    }
+}
+
+/// Where the particles are.
+struct Surface<'a> {
+    rest: &'a [Vec3],
+    rows: usize,
+    columns: usize,
+    closed: bool,
+    /// Area of the cell that begins at each particle, m²; 0 where there is none.
+    areas: Vec<f32>,
+}
+
+impl Surface<'_> {
+    fn along_row(&self, (row, column): (usize, usize)) -> Option<Bend> {
+        let (before, after) = (self.left((row, column))?, self.right((row, column))?);
+        let side = if row + 1 < self.rows { (row + 1, column) } else { (row - 1, column) };
+        self.along([before, (row, column), after], side)
+    }
+
+    fn along_column(&self, (row, column): (usize, usize)) -> Option<Bend> {
         let (before, after) = ((row.checked_sub(1)?, column), self.below((row, column))?);
         let side = self.right((row, column)).or_else(|| self.left((row, column)))?;
         self.along([before, (row, column), after], side)
     }
 
-    /// The twist of the cell that begins at a particle.
-    pub fn twist(&self, at: (usize, usize)) -> Option<Bend> {
+    fn twist(&self, at: (usize, usize)) -> Option<Bend> {
         let corners = self.cell(at)?;
         let weight = (2.0 / self.area(at)).sqrt();
         let particles = [corners[0], corners[2], corners[1], corners[3]];
@@ -92,33 +158,6 @@ impl<'a> Plate<'a> {
         Bend { particles: particles.map(|at| self.particle(at)), weights, rest }
     }
 
-    /// What bends are at rest, for the lattice. None where all is flat.
-    pub fn curl(&self) -> Option<Curl> {
-        let of = |find: &dyn Fn((usize, usize)) -> Option<Bend>, is_turned: &dyn Fn((usize, usize)) -> bool| {
-            let at = |(row, column): (usize, usize)| {
-                let is_inside = row < self.rows && column < self.columns;
-                let rest = is_inside.then(|| find((row, column))).flatten().map_or([0.0; 3], |bend| bend.rest);
-                // The lattice looks for a thread's side always after it, where a bend at the border looks before.
-                let [x, y, z] = rest;
-                if is_turned((row, column)) { [x, -y, -z] } else { rest }
-            };
-            let blocks = (0..self.columns).step_by(LANES).flat_map(|first| (0..self.rows).map(move |row| (row, first)));
-            let block = |(row, first): (usize, usize)| {
-                [0, 1, 2].map(|axis| -> Lane { core::array::from_fn(|l| at((row, first + l))[axis]) })
-            };
-            blocks.map(block).collect::<Vec<_>>()
-        };
-        let is_inner = |(_, column): (usize, usize)| column > 0 && column + 1 < self.columns;
-        let curl = Curl {
-            along_rows: of(&|at| self.along_row(at).filter(|_| is_inner(at)), &|(row, _)| row + 1 == self.rows),
-            along_columns: of(&|at| self.along_column(at), &|(_, column)| !self.closed && column + 1 == self.columns),
-            twist: of(&|at| self.twist(at).filter(|_| at.1 + 1 < self.columns), &|_| false),
-        };
-        let all = [&curl.along_rows, &curl.along_columns, &curl.twist];
-        let is_curved = all.into_iter().flatten().any(|block| block.as_flattened().iter().any(|&rest| rest != 0.0));
-        is_curved.then_some(curl)
-    }
-
     /// Area that a particle stands for, m²: a quarter of the cells around it.
     fn area_around(&self, at: (usize, usize)) -> f32 {
         let left = self.left(at);
@@ -127,8 +166,12 @@ impl<'a> Plate<'a> {
         cells.into_iter().flatten().map(|cell| self.area(cell) / 4.0).sum()
     }
 
+    fn area(&self, (row, column): (usize, usize)) -> f32 {
+        self.areas[row * self.columns + column]
+    }
+
     /// Area of the cell that begins at a particle, m²; 0 where there is none.
-    fn area(&self, at: (usize, usize)) -> f32 {
+    fn measure(&self, at: (usize, usize)) -> f32 {
         self.cell(at).map_or(0.0, |corners| {
             let [p, q, r, s] = corners.map(|at| self.place(at));
             (r - p).cross(s - q).length() / 2.0

@@ -68,7 +68,8 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
     // Rows and columns are threads, whichever way they run.
     let carrying = if rectangle.is_some() { cells.clone() } else { cells.true_to(&rest, &warp) };
     shares::share_out(&rest, &carrying, &slivers, &warp, &mut all);
-    let woven = rectangle.as_ref().map(|rectangle| lattice::weave(&rest, rectangle, &all));
+    let plate = rectangle.as_ref().map(|rectangle| Plate::new(&rest, rectangle));
+    let woven = rectangle.as_ref().zip(plate.as_ref()).map(|(rectangle, plate)| lattice::weave(rectangle, plate, &all));
     let (lattice, braids, woven) = match woven {
         Some((lattice, woven)) => (Some(lattice), Vec::new(), woven),
         None => {
@@ -87,9 +88,9 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
     let triangle_areas: Vec<f32> = triangles.iter().map(|triangle| triangle_area(&rest, triangle)).collect();
     let areas = particle_areas(rest.len(), &triangles, &triangle_areas);
     let (faces, face_batches) = faces::find(&rest, &triangles, &carrying, &warp);
-    let (bends, bend_batches) = match (&lattice, &rectangle) {
-        (Some(_), Some(rectangle)) => bends::of_plate(&Plate::new(&rest, rectangle), rest.len()),
-        _ => bends::batches(rest.len(), &hinges::find(&rest, &edges, &areas, &triangle_areas, &warp)),
+    let (bends, bend_batches) = match &plate {
+        Some(plate) => bends::of_plate(plate, rest.len()),
+        None => bends::batches(rest.len(), &hinges::find(&rest, &edges, &areas, &triangle_areas, &warp)),
     };
     // Those of a lattice are seldom solved one by one: what takes less time to find is good enough.
     let bend_rate = if lattice.is_some() { rate::bound(&bends, &areas) } else { rate::of_bends(&bends, &areas) };
