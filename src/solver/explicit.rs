@@ -5,7 +5,7 @@
 use bevy::math::Vec3A;
 
 use super::{
-    Lanes, Material, Moduli, Particles, Spring, SpringConstants, StepContext, Topology,
+    Lanes, Material, Moduli, Particles, Spring, SpringConstants, SpringKind, StepContext, Topology,
     constraint::{bend::Bent, face::Deformed},
 };
 
@@ -13,8 +13,8 @@ use super::{
 /// is bent out of its rest shape.
 const STABLE: f32 = 3.6;
 
-/// The strain up to which springs that stiffen are stable, no unit.
-const STRETCHED: f32 = 0.2;
+/// By how much more than they are already springs that stiffen may be stretched in a step and still be stable, no unit.
+const MORE_STRETCHED: f32 = 0.2;
 
 /// Substeps that keep a step of `dt` seconds stable, and the share of stiffness and damping that `ctx.max_substeps` of
 /// them can carry: 1 unless more would be needed.
@@ -29,9 +29,10 @@ pub(super) fn stable_substeps(
     dt: f32,
     sums: &mut Vec<(f32, f32)>,
 ) -> (u32, f32) {
-    sum_spring_constants(topology, &ctx.material, sums);
+    let stretched = MORE_STRETCHED + most_stretched(lanes, topology, &ctx.material);
+    sum_spring_constants(topology, &ctx.material, stretched, sums);
     if let Some(moduli) = ctx.material.moduli() {
-        sum_sheet_constants(topology, moduli, sums);
+        sum_sheet_constants(topology, moduli, stretched, sums);
     }
     let (mut omega_squared, mut gamma) = (0.0_f32, 0.0_f32);
     for (particle, &(k, c)) in (0..).zip(&*sums) {
@@ -50,15 +51,25 @@ pub(super) fn stable_substeps(
     (needed as u32, STABLE / (omega_squared * h * h + 2.0 * gamma * h))
 }
 
-/// Adds up stiffness and damping of the springs at each particle.
-fn sum_spring_constants(topology: &Topology, material: &Material, sums: &mut Vec<(f32, f32)>) {
+/// The largest strain of a thread, no unit: 0 where none is stretched, or where stiffness doesn't change with it.
+fn most_stretched(lanes: &Lanes, topology: &Topology, material: &Material) -> f32 {
+    if material.moduli().is_none_or(|moduli| moduli.stiffening == [0.0; 2]) {
+        return 0.0;
+    }
+    let place = |particle: u32| lanes.position.get(lanes.order.slot(particle));
+    let strain = |spring: &Spring| place(spring.a).distance(place(spring.b)) / spring.rest - 1.0;
+    topology.springs_of(SpringKind::Structural).map(strain).fold(0.0, f32::max)
+}
+
+/// Adds up stiffness and damping of the springs at each particle, where threads are `stretched` by so much.
+fn sum_spring_constants(topology: &Topology, material: &Material, stretched: f32, sums: &mut Vec<(f32, f32)>) {
     sums.clear();
     sums.resize(topology.particle_count(), (0.0, 0.0));
     for batch in &topology.batches {
         for spring in &topology.springs[batch.range.clone()] {
             let law = material.spring(batch.kind, spring);
             let SpringConstants { stiffness, damping } = law.constants;
-            let stiffness = stiffness * (1.0 + law.stiffening * STRETCHED);
+            let stiffness = stiffness * (1.0 + law.stiffening * stretched);
             for particle in [spring.a, spring.b] {
                 let (k, c) = &mut sums[particle as usize];
                 *k += stiffness;
@@ -70,21 +81,21 @@ fn sum_spring_constants(topology: &Topology, material: &Material, sums: &mut Vec
 
 /// Adds stiffness and damping of faces and bends to the sums, half of what Gershgorin's circle around a particle takes of
 /// them: a spring has its stiffness twice in it.
-fn sum_sheet_constants(topology: &Topology, moduli: &Moduli, sums: &mut [(f32, f32)]) {
+fn sum_sheet_constants(topology: &Topology, moduli: &Moduli, stretched: f32, sums: &mut [(f32, f32)]) {
     let mut add = |particle: u32, stiffness: f32, delay: f32| {
         let (k, c) = &mut sums[particle as usize];
         *k += 0.5 * stiffness;
         *c += 0.5 * stiffness * delay;
     };
     let [along_u, along_v] =
-        [0, 1].map(|i| moduli.stretch[i] + (moduli.stretch[i] - moduli.shear) * moduli.stiffening[i] * STRETCHED);
+        [0, 1].map(|i| moduli.stretch[i] + (moduli.stretch[i] - moduli.shear) * moduli.stiffening[i] * stretched);
     for face in &topology.faces {
         let whole = |[b, c]: [f32; 2]| [(b + c).abs(), b.abs(), c.abs()];
         let (u, v) = (whole(face.warp), whole(face.weft));
         let (all_u, all_v) = (u.iter().sum::<f32>(), v.iter().sum::<f32>());
         for ((&particle, u), v) in face.particles.iter().zip(u).zip(v) {
             let threads = along_u * u * all_u + along_v * v * all_v;
-            let across = u * all_v + v * all_u + (u + v) * (all_u + all_v) * (1.0 + STRETCHED) * (1.0 + STRETCHED);
+            let across = u * all_v + v * all_u + (u + v) * (all_u + all_v) * (1.0 + stretched) * (1.0 + stretched);
             add(particle, face.area * (threads + moduli.shear * across), moduli.stretch_damping);
         }
     }

@@ -8,12 +8,12 @@ use bevy::{
     tasks::{TaskPool, TaskPoolBuilder},
 };
 use bevy_drape::{
-    prelude::{ClothGrid, ClothGrip, ClothSprings},
+    prelude::{ClothGrid, ClothGrip, ClothSprings, Fabric},
     solver::{ColliderShape, Method, Obstacle},
 };
 
 use crate::{
-    bench_bed::{ALL, Bed, bits, springs_in_air},
+    bench_bed::{ALL, Bed, bare, bits, springs_in_air},
     grabs::hand,
 };
 
@@ -78,6 +78,9 @@ fn any_number_of_threads_gives_the_same_bits() {
     pushed.particles.force[7000] = Vec3A::new(0.0, 0.02, 0.01);
     let mut held = an_edge.clone();
     held.grabs = vec![hand(&held, 9000, [0.2, 0.3, 0.5], ClothGrip::default())];
+    // A sheet has diagonals along the bias and bends, which go from band to band as well.
+    let mut sheet = two_corners.clone();
+    sheet.material = bare(Fabric { stretch_damping: 0.001, bend_damping: 0.01, ..Fabric::DENIM });
     let mut touched = two_corners.clone();
     touched.obstacles = scene(Method::Strands).obstacles;
     for (name, bed) in [
@@ -87,6 +90,7 @@ fn any_number_of_threads_gives_the_same_bits() {
         ("a push", pushed),
         ("a hand", held),
         ("an obstacle", touched),
+        ("a sheet", sheet),
     ] {
         let run = |pool: Option<TaskPool>| {
             let mut bed = Bed { pool: pool.map(Arc::new), ..bed.clone() };
