@@ -55,7 +55,7 @@ impl Plate {
     /// All bends, and whether each is within the lattice: all but those across the seam of a tube.
     pub fn bends(&self) -> impl Iterator<Item = (Bend, bool)> {
         let columns = self.columns;
-        let is_inner = move |i: usize| i % columns > 0 && i % columns + 1 < columns;
+        let is_inner = move |i: usize| (1..columns - 1).contains(&(i % columns));
         let along_rows = self.along_rows.iter().enumerate().filter_map(move |(i, bend)| Some(((*bend)?, is_inner(i))));
         let along_columns = self.along_columns.iter().filter_map(|bend| Some(((*bend)?, true)));
         let twists = self.twists.iter().enumerate();
