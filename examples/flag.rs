@@ -23,7 +23,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
         let foot = Vec3::new(2.0 * i as f32 - 2.3, 0.0, 0.0);
         let pole = studio.spawn_rod(&mut commands, foot, foot + Vec3::Y * 2.4, 0.025);
         commands.spawn((
-            studio.cloth(ClothGrid::new(1.4, 0.9, 42, 27), color),
+            studio.cloth(ClothGrid::new(1.4, 0.9, 50, 33), color),
             Cloth { substeps: Some(12), ..default() },
             Fabric { lift: 0.8, ..Fabric::POLYESTER_TABLECLOTH },
             // Pinned to the pole, the flag follows wherever that goes.

@@ -29,13 +29,13 @@ fn main() -> AppExit {
 fn setup(mut commands: Commands, mut studio: common::Studio) {
     common::spawn_camera(&mut commands, Vec3::new(0.4, 1.35, 2.9), Vec3::new(0.0, 0.95, 0.0));
     let linen = Color::srgb(0.55, 0.53, 0.50);
-    let grid = ClothGrid::new(1.0, 1.0, 24, 24);
+    let grid = ClothGrid::new(1.0, 1.0, 36, 36);
     let hanging = Pins::edge_corners(ClothEdge::Top);
 
     let springs = ClothDebugView { full_strain: 0.05, ..ClothDebugView::springs() };
     commands.spawn((
         // Soft enough to see the strain, and nothing that holds it back. It is limper than the others.
-        studio.cloth(ClothGrid::new(1.0, 1.0, 32, 32), linen),
+        studio.cloth(ClothGrid::new(1.0, 1.0, 49, 49), linen),
         Cloth { tether_slack: None, ..default() },
         Fabric::COTTON_JERSEY,
         hanging.clone(),

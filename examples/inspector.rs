@@ -27,7 +27,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
     commands.entity(pole).insert(Name::new("Pole"));
     commands.spawn((
         Name::new("Flag"),
-        studio.cloth(ClothGrid::new(1.0, 0.66, 30, 20), Color::srgb(0.62, 0.16, 0.14)),
+        studio.cloth(ClothGrid::new(1.0, 0.66, 37, 25), Color::srgb(0.62, 0.16, 0.14)),
         Cloth::default(),
         Fabric::POLYESTER_TABLECLOTH,
         Pins::edge(ClothEdge::Left).to_entity(pole),
@@ -41,7 +41,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
     ));
     commands.spawn((
         Name::new("Cloth on the ball"),
-        studio.cloth(ClothGrid::new(1.0, 1.0, 42, 42).lying(), Color::srgb(0.16, 0.38, 0.62)),
+        studio.cloth(ClothGrid::new(1.0, 1.0, 47, 47).lying(), Color::srgb(0.16, 0.38, 0.62)),
         Cloth { substeps: Some(12), collision_margin: 0.008, ..default() },
         Fabric::SILK,
         Transform::from_xyz(0.5, 0.8, 0.6),

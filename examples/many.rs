@@ -26,7 +26,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
             mesh.clone(),
             materials[(i * 7 + i / 10 * 3) % materials.len()].clone(),
             Cloth::default(),
-            Fabric::POLYESTER_TABLECLOTH,
+            Fabric::COTTON_WOVEN,
             Pins::edge(ClothEdge::Left),
             Transform::from_translation(foot + Vec3::new(0.515, 1.48, 0.0)),
         ));

@@ -77,7 +77,7 @@ struct Ring {
 
 /// A curtain that two corners hold on a rod, by rings that slide to and fro.
 fn spawn_curtain(commands: &mut Commands, studio: &mut common::Studio) {
-    let grid = ClothGrid::new(1.5, 1.8, 40, 48);
+    let grid = ClothGrid::new(1.5, 1.8, 46, 54);
     let middle = Vec3::new(-1.3, 2.2, -0.9);
     studio.spawn_rod(commands, middle - Vec3::X * 0.8, middle + Vec3::X * 0.8, 0.018);
     let mut ring = |side: f32| {
@@ -87,7 +87,7 @@ fn spawn_curtain(commands: &mut Commands, studio: &mut common::Studio) {
         commands.spawn((torus, Ring { middle, side }, upright)).id()
     };
     let left = Pins::indices([grid.vertex(0, 0)]).to_entity(ring(-1.0));
-    let right = Pins::indices([grid.vertex(39, 0)]).to_entity(ring(1.0));
+    let right = Pins::indices([grid.vertex(45, 0)]).to_entity(ring(1.0));
     commands.spawn((
         studio.cloth(grid, Color::srgb(0.72, 0.16, 0.14)),
         Cloth { substeps: Some(24), ..default() },

@@ -34,7 +34,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
         Rolling,
     ));
     commands.spawn((
-        studio.cloth(ClothGrid::new(2.0, 2.0, 64, 64).lying(), Color::srgb(0.90, 0.88, 0.82)),
+        studio.cloth(ClothGrid::new(2.0, 2.0, 72, 72).lying(), Color::srgb(0.90, 0.88, 0.82)),
         Cloth { substeps: Some(16), collision_margin: 0.012, ..default() },
         Fabric::POLYESTER_TABLECLOTH,
         Transform::from_xyz(0.0, 1.1, 0.0),
