@@ -116,19 +116,21 @@ impl Fabric {
         check("Fabric::compression", self.compression, (0.0..=1.0).contains(&self.compression), "0 to 1")?;
         let pulled = [self.warp_stiffness, self.weft_stiffness];
         let stiffening = [self.warp_stiffening, self.weft_stiffening];
-        let most = Moduli::most_shear(pulled);
-        let fitting = format!(
-            "at most {most} N/m, the product of warp and weft stiffness over their difference: with more, a strip would \
-             be stiffer than was measured"
-        );
-        check("Fabric::shear_stiffness", self.shear_stiffness, self.shear_stiffness <= most, &fitting)?;
-        let moduli =
-            Moduli::from_strips(pulled, self.shear_stiffness, stiffening, self.compression).unwrap_or_default();
+        let misfit = || ClothError::InvalidParameter {
+            name: "Fabric::shear_stiffness".into(),
+            value: self.shear_stiffness,
+            rule: format!(
+                "at most {} N/m, the product of warp and weft stiffness over their difference: with more, a strip would \
+                 be stiffer than was measured",
+                Moduli::most_shear(pulled)
+            ),
+        };
+        let moduli = Moduli::from_strips(pulled, self.shear_stiffness, stiffening, self.compression);
         let moduli = Moduli {
             bending: self.bending_rigidity,
             stretch_damping: self.stretch_damping,
             bend_damping: self.bend_damping,
-            ..moduli
+            ..moduli.ok_or_else(misfit)?
         };
         Ok(self.with(Elasticity::Moduli(moduli)))
     }

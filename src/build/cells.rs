@@ -26,22 +26,25 @@ pub(crate) struct Cells {
 const MOST_ASKEW: f32 = 0.1;
 
 impl Cells {
-    /// Those whose springs can be a sheet with the `warp` of each triangle: the others would be stiffer than it.
-    pub fn true_to(&self, rest: &[Vec3], warp: &[Vec3]) -> Self {
-        let mut warp_of_cell = vec![Vec3::ZERO; self.corners.len()];
-        for (cell, &warp) in self.of_triangle.iter().zip(warp) {
+    /// Direction of the warp in each cell, given that in each triangle.
+    pub fn warp(&self, of_triangles: &[Vec3]) -> Vec<Vec3> {
+        let mut warp = vec![Vec3::Y; self.corners.len()];
+        for (cell, &of_triangle) in self.of_triangle.iter().zip(of_triangles) {
             if let Some(cell) = cell {
-                warp_of_cell[*cell as usize] = warp;
+                warp[*cell as usize] = of_triangle;
             }
         }
+        warp
+    }
+
+    /// Those whose springs can be a sheet with the `warp` of each triangle: the others would be stiffer than it.
+    pub fn true_to(&self, rest: &[Vec3], warp: &[Vec3]) -> Self {
         let is_true = |(corners, warp): (&[u32; 4], &Vec3)| {
-            let p = corners.map(|i| rest[i as usize]);
-            let sides: [Vec3; 4] = array::from_fn(|i| (p[(i + 1) % 4] - p[i]).normalize_or_zero());
-            let corner = |i: usize| sides[i].dot(sides[(i + 1) % 4]).abs() < MOST_ASKEW;
+            let sides = sides(corners.map(|i| rest[i as usize]));
             let along = [sides[0].dot(*warp).abs(), sides[1].dot(*warp).abs()];
-            (0..4).all(corner) && along[0].min(along[1]) < MOST_ASKEW
+            largest_cosine(&sides) < MOST_ASKEW && along[0].min(along[1]) < MOST_ASKEW
         };
-        let kept: Vec<bool> = self.corners.iter().zip(&warp_of_cell).map(is_true).collect();
+        let kept: Vec<bool> = self.corners.iter().zip(&self.warp(warp)).map(is_true).collect();
         let numbers: Vec<u32> =
             kept.iter().scan(0, |next, &kept| Some(core::mem::replace(next, *next + u32::from(kept)))).collect();
         let number = |cell: Option<u32>| cell.filter(|&cell| kept[cell as usize]).map(|cell| numbers[cell as usize]);
@@ -85,8 +88,7 @@ fn corners_of(one: &HalfEdge, other: &HalfEdge) -> [u32; 4] {
 /// quad that is too far, folded or degenerate.
 fn skew(rest: &[Vec3], corners: [u32; 4]) -> Option<f32> {
     let p = corners.map(|i| rest[i as usize]);
-    let sides: [Vec3; 4] = array::from_fn(|i| (p[(i + 1) % 4] - p[i]).normalize_or_zero());
-    let skew = (0..4).map(|i| sides[i].dot(sides[(i + 1) % 4]).abs()).fold(0.0, f32::max);
+    let skew = largest_cosine(&sides(p));
     // Most pairs of triangles: their turn comes before the costlier look at their normals.
     if skew > MOST_COSINE {
         return None;
@@ -94,4 +96,14 @@ fn skew(rest: &[Vec3], corners: [u32; 4]) -> Option<f32> {
     let normal = |a: Vec3, b: Vec3, c: Vec3| (b - a).cross(c - a).normalize_or_zero();
     let flatness = normal(p[0], p[1], p[2]).dot(normal(p[0], p[2], p[3]));
     (flatness >= LEAST_FLATNESS).then_some((skew * 1e3).round())
+}
+
+/// Directions of a quad's sides, around it.
+fn sides(corners: [Vec3; 4]) -> [Vec3; 4] {
+    array::from_fn(|i| (corners[(i + 1) % 4] - corners[i]).normalize_or_zero())
+}
+
+/// The largest |cos| of the corners between sides.
+fn largest_cosine(sides: &[Vec3; 4]) -> f32 {
+    (0..4).map(|i| sides[i].dot(sides[(i + 1) % 4]).abs()).fold(0.0, f32::max)
 }

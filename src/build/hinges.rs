@@ -40,8 +40,8 @@ struct Hinge {
     warp: Vec2,
 }
 
-/// A bend for each edge between two triangles, none of them woven. `areas` are those of the particles and `triangle_areas` those of the
-/// triangles, m², and `warp` is the direction of the warp in each triangle.
+/// A bend for each edge between two triangles, none of them woven. `areas` are those of the particles and `triangle_areas`
+/// those of the triangles, m², and `warp` is the direction of the warp in each triangle.
 pub(super) fn find(
     rest: &[Vec3],
     edges: &Edges,

@@ -26,14 +26,8 @@ pub(super) fn share_out(
     warp: &[Vec3],
     springs: &mut [(SpringKind, Spring)],
 ) {
-    let mut warp_of_cell = vec![Vec3::Y; cells.corners.len()];
-    for (cell, &warp) in cells.of_triangle.iter().zip(warp) {
-        if let Some(cell) = cell {
-            warp_of_cell[*cell as usize] = warp;
-        }
-    }
     let find = Finder::new(rest.len(), springs);
-    for (&[i, j, k, l], warp) in cells.corners.iter().zip(warp_of_cell) {
+    for (&[i, j, k, l], warp) in cells.corners.iter().zip(cells.warp(warp)) {
         let at = |particle: u32| rest[particle as usize];
         let along = (at(j) - at(i)) + (at(k) - at(l));
         let across = (at(l) - at(i)) + (at(k) - at(j));

@@ -78,32 +78,27 @@ impl Moduli {
     /// Tu / εu = Cu - G²/Dv, with Dv = G + compression · (Cv - G), as the weft is pressed together. The other way round
     /// the same. None where that would need C < G, which is where `shear` is more than [`most_shear`](Self::most_shear).
     pub fn from_strips(pulled: [f32; 2], shear: f32, stiffening: [f32; 2], compression: f32) -> Option<Self> {
-        let mut stretch = pulled.map(|k| k + shear);
-        let narrowing = |across: f32| {
-            let pressed = shear + compression * (across - shear);
-            if pressed > 0.0 { shear * shear / pressed } else { 0.0 }
-        };
+        let mut moduli = Self { stretch: pulled.map(|k| k + shear), shear, compression, ..Self::default() };
         // Each round leaves a small part of the error: that of a second is mostly too small for the numbers.
         for _ in 0..64 {
-            let [warp, weft] = stretch;
-            stretch = [pulled[0] + narrowing(weft), pulled[1] + narrowing(warp)];
+            moduli.stretch = [0, 1].map(|i| pulled[i] + moduli.narrowing(i));
         }
-        let threads = stretch.map(|c| c - shear);
+        let threads = moduli.stretch.map(|c| c - shear);
         // Of a strip, only the threads' part stiffens.
         let growth = |i: usize| if threads[i] > 0.0 { stiffening[i] * pulled[i] / threads[i] } else { 0.0 };
-        let stiffening = [growth(0), growth(1)];
-        let moduli = Self { stretch, shear, stiffening, compression, ..Self::default() };
+        moduli.stiffening = [growth(0), growth(1)];
         (shear <= Self::most_shear(pulled)).then_some(moduli)
     }
 
     /// What strips with free sides take along warp and weft, N/m: what [`from_strips`](Self::from_strips) was given.
     pub fn pulled(&self) -> [f32; 2] {
-        let along = |i: usize| {
-            let pressed = self.shear + self.compression * (self.stretch[1 - i] - self.shear);
-            let narrowing = if pressed > 0.0 { self.shear * self.shear / pressed } else { 0.0 };
-            self.stretch[i] - narrowing
-        };
-        [along(0), along(1)]
+        [0, 1].map(|i| self.stretch[i] - self.narrowing(i))
+    }
+
+    /// What a strip along one direction takes less because it may get narrower, N/m: G²/D.
+    fn narrowing(&self, along: usize) -> f32 {
+        let pressed = self.shear + self.compression * (self.stretch[1 - along] - self.shear);
+        if pressed > 0.0 { self.shear * self.shear / pressed } else { 0.0 }
     }
 
     /// The largest shear modulus (N/m) that goes with strips of such stiffness: k K / (K - k) for the smaller k and the

@@ -61,7 +61,7 @@ pub(in crate::solver) struct Grading {
 }
 
 impl Grading {
-    pub fn new(moduli: &Moduli, grain: Grain, h: f32) -> Self {
+    fn new(moduli: &Moduli, grain: Grain, h: f32) -> Self {
         let i = grain.index();
         Self {
             stretch: moduli.stretch[i] * h * h,
@@ -71,9 +71,7 @@ impl Grading {
             damping: moduli.stretch_damping / h,
         }
     }
-}
 
-impl Grading {
     /// Along both directions, by [`Grain::index`].
     pub fn both(moduli: &Moduli, h: f32) -> [Self; 2] {
         [Grain::Warp, Grain::Weft].map(|grain| Self::new(moduli, grain, h))
@@ -115,6 +113,19 @@ impl<S: Simd, F: Wide<S>> Law<S, F> for Graded<F> {
     }
 }
 
+impl<F> Graded<F> {
+    /// Of springs with a k h² over the rest length (kg/m) that are along the warp where that part of them is the larger.
+    #[inline(always)]
+    fn along<S: Simd>(simd: S, [warp, weft]: [F; 2], per_length: F, [along_warp, along_weft]: [Grading; 2]) -> Self
+    where
+        F: Wide<S>,
+    {
+        let stiffening = |grading: Grading| F::splat(simd, grading.half_stiffening);
+        let half_stiffening = warp.simd_ge(weft).select(stiffening(along_warp), stiffening(along_weft));
+        Self { per_length, half_stiffening, compression: along_warp.compression, damping: along_warp.damping }
+    }
+}
+
 /// The laws of springs that lie anywhere.
 pub(in crate::solver) trait LooseLaws: Copy {
     fn law<S: Simd>(&self, simd: S, springs: &[Spring; LANES]) -> impl Law<S, f32x8<S>>;
@@ -140,9 +151,7 @@ impl LooseLaws for [Grading; 2] {
         let [warp, weft, shear] = [lane(simd, &shares[0]), lane(simd, &shares[1]), lane(simd, &shares[2])];
         let k = warp * along_warp.stretch + weft * along_weft.stretch + shear * along_warp.shear;
         let per_length = k.max(f32x8::splat(simd, 0.0)) / lane(simd, &rest).max(f32x8::splat(simd, SHORTEST));
-        let stiffening = |grading: Grading| f32x8::splat(simd, grading.half_stiffening);
-        let half_stiffening = warp.simd_ge(weft).select(stiffening(along_warp), stiffening(along_weft));
-        Graded { per_length, half_stiffening, compression: along_warp.compression, damping: along_warp.damping }
+        Graded::along(simd, [warp, weft], per_length, *self)
     }
 }
 
@@ -245,9 +254,6 @@ impl<S: Simd, F: Wide<S>> Laws<S, F> for AnyThreads<'_> {
         let part = |i: usize| F::load(simd, lanes, 3 * at + i, 3 * stride);
         let (warp, weft) = (part(0), part(1));
         let k = warp * along_warp.stretch + weft * along_weft.stretch - part(2) * along_warp.shear;
-        let per_length = k.max(F::splat(simd, 0.0));
-        let stiffening = |grading: Grading| F::splat(simd, grading.half_stiffening);
-        let half_stiffening = warp.simd_ge(weft).select(stiffening(along_warp), stiffening(along_weft));
-        Graded { per_length, half_stiffening, compression: along_warp.compression, damping: along_warp.damping }
+        Graded::along(simd, [warp, weft], k.max(F::splat(simd, 0.0)), self.gradings)
     }
 }

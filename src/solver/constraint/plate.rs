@@ -185,8 +185,3 @@ pub(in crate::solver) fn prepare(
         });
     }
 }
-
-/// Of the threads of all packs from the `first` on, with so many `nodes` each.
-pub(in crate::solver) fn from_pack<T>(all: &[T], first: usize, nodes: usize) -> &[T] {
-    all.get(first * nodes..).unwrap_or_default()
-}

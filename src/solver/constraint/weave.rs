@@ -10,7 +10,7 @@ use fearless_simd::{dispatch, f32x8, f32x16, prelude::*};
 use super::{
     curvature::{Bends, Factor},
     law::{Laws, Scaled, SheetThreads},
-    plate::{Plate, from_pack},
+    plate::Plate,
     strand::{Pack, Rows, Springs},
     yarn::Yarn,
 };
@@ -222,18 +222,17 @@ impl Weaver<'_> {
 
     /// The columns of some packs from the `first` on.
     fn columns(&self, first: usize) -> ThreadRun<'_> {
-        let (threads, plate) = (&self.lattice.along_columns, self.plate);
-        let nodes = threads.nodes;
-        let (factors, rest) = (from_pack(&plate.columns, first, nodes), from_pack(&plate.rest.columns, first, nodes));
-        ThreadRun { threads, first: first * nodes, factors, rest, yarn: self.yarn }
+        self.run(&self.lattice.along_columns, &self.plate.columns, &self.plate.rest.columns, first)
     }
 
     /// The rows of some packs from the `first` on.
     fn rows(&self, first: usize) -> ThreadRun<'_> {
-        let (threads, plate) = (&self.lattice.along_rows, self.plate);
-        let nodes = threads.nodes;
-        let (factors, rest) = (from_pack(&plate.rows, first, nodes), from_pack(&plate.rest.rows, first, nodes));
-        ThreadRun { threads, first: first * nodes, factors, rest, yarn: self.yarn }
+        self.run(&self.lattice.along_rows, &self.plate.rows, &self.plate.rest.rows, first)
+    }
+
+    fn run<'a>(&self, threads: &'a Threads, factors: &'a [Factor], rest: &'a [Block], first: usize) -> ThreadRun<'a> {
+        let first = first * threads.nodes;
+        ThreadRun { threads, first, factors: from(factors, first), rest: from(rest, first), yarn: self.yarn }
     }
 
     /// Solves one or two packs of threads.
@@ -246,6 +245,11 @@ impl Weaver<'_> {
             (false, true) => dispatch!(level, simd => run.solve::<_, f32x8<_>, true>(simd, pack, rows)),
         }
     }
+}
+
+/// What is there from a place on: nothing, of what is empty.
+fn from<T>(all: &[T], first: usize) -> &[T] {
+    all.get(first..).unwrap_or_default()
 }
 
 /// Takes a band's part of some packs of columns to where whole columns stand one after the other.
@@ -332,7 +336,7 @@ impl ThreadRun<'_> {
         for first in (0..pack.position.len()).step_by(stride) {
             let bends = Bends {
                 weights: &self.threads.curvature[self.first + first..],
-                rest: from_pack(self.rest, first, 1),
+                rest: from(self.rest, first),
                 factors: &self.factors[first..],
                 rigidity,
             };
