@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::{
     anchor::Poses,
-    solver::{ColliderShape, Obstacle},
+    solver::{Obstacle, Shape, Solid, TaperedCapsule},
 };
 
 /// An obstacle for cloth, moved by its `Transform`.
@@ -16,8 +16,8 @@ use crate::{
 /// cloth, and one that moves once a frame comes in jolts where a frame has several steps or none. Removing the component
 /// and inserting it again lets it jump without pushing.
 ///
-/// Made from one of Bevy's primitives: `ClothCollider::from(Sphere::new(0.3))`; also from a `Cuboid`, a `Capsule3d`, a
-/// `Cylinder` and, for a ground, an `InfinitePlane3d`, behind which all is solid. The transform's scale applies; where
+/// Made from one of Bevy's primitives: `ClothCollider::from(Sphere::new(0.3))`; also from a `Cuboid`, a `Capsule3d`, a [`TaperedCapsule`], a
+/// `Cylinder`, a `Cone` and, for a ground, an `InfinitePlane3d`, behind which all is solid. The transform's scale applies; where
 /// it isn't uniform, round shapes take its largest factor.
 ///
 /// A collider of no size, or with a transform that isn't finite, is left out, with one warning.
@@ -33,6 +33,14 @@ pub struct ClothCollider {
     pub layers: u32,
 }
 
+/// What a collider is like.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Debug, Clone, PartialEq)]
+pub enum ColliderShape {
+    /// A primitive.
+    Solid(Solid),
+}
+
 impl Default for ClothCollider {
     /// A ball of half a metre radius.
     fn default() -> Self {
@@ -46,33 +54,51 @@ impl From<ColliderShape> for ClothCollider {
     }
 }
 
+impl From<Solid> for ClothCollider {
+    fn from(solid: Solid) -> Self {
+        ColliderShape::Solid(solid).into()
+    }
+}
+
 impl From<Sphere> for ClothCollider {
     fn from(sphere: Sphere) -> Self {
-        ColliderShape::Sphere(sphere).into()
+        Solid::Sphere(sphere).into()
     }
 }
 
 impl From<Cuboid> for ClothCollider {
     fn from(cuboid: Cuboid) -> Self {
-        ColliderShape::Cuboid(cuboid).into()
+        Solid::Cuboid(cuboid).into()
     }
 }
 
 impl From<Capsule3d> for ClothCollider {
     fn from(capsule: Capsule3d) -> Self {
-        ColliderShape::Capsule(capsule).into()
+        Solid::Capsule(capsule).into()
     }
 }
 
 impl From<Cylinder> for ClothCollider {
     fn from(cylinder: Cylinder) -> Self {
-        ColliderShape::Cylinder(cylinder).into()
+        Solid::Cylinder(cylinder).into()
+    }
+}
+
+impl From<TaperedCapsule> for ClothCollider {
+    fn from(capsule: TaperedCapsule) -> Self {
+        Solid::TaperedCapsule(capsule).into()
+    }
+}
+
+impl From<Cone> for ClothCollider {
+    fn from(cone: Cone) -> Self {
+        Solid::Cone(cone).into()
     }
 }
 
 impl From<InfinitePlane3d> for ClothCollider {
     fn from(plane: InfinitePlane3d) -> Self {
-        ColliderShape::HalfSpace(plane).into()
+        Solid::HalfSpace(plane).into()
     }
 }
 
@@ -83,47 +109,58 @@ impl ClothCollider {
         self
     }
 
-    /// ColliderShape and world pose under a transform. None where nothing solid is left.
-    fn placed(&self, pose: Affine3A) -> Option<(ColliderShape, Isometry3d)> {
+    /// Shape and world pose under a transform. None where nothing solid is left.
+    fn placed(&self, pose: Affine3A) -> Option<(Solid, Isometry3d)> {
         let (scale, rotation, translation) = pose.to_scale_rotation_translation();
-        let mut shape = scaled(self.shape, scale.abs())?;
-        if let ColliderShape::HalfSpace(plane) = &mut shape {
+        let ColliderShape::Solid(solid) = self.shape;
+        let mut solid = scaled(solid, scale.abs())?;
+        if let Solid::HalfSpace(plane) = &mut solid {
             // A plane's normal goes by the inverse transpose: exact under any scale, mirrored or not.
             let world = pose.matrix3.inverse().transpose() * Vec3A::from(Vec3::from(plane.normal));
             plane.normal = Dir3::new(rotation.inverse() * Vec3::from(world)).ok()?;
         }
         let pose = Isometry3d::new(translation, rotation);
         let is_finite = pose.translation.is_finite() && pose.rotation.is_finite() && self.friction.is_finite();
-        (is_finite && self.friction >= 0.0).then_some((shape, pose))
+        (is_finite && self.friction >= 0.0).then_some((solid, pose))
     }
 }
 
-/// A shape under a scale of no negative factors; none where it has no size or none that is finite.
-fn scaled(shape: ColliderShape, scale: Vec3) -> Option<ColliderShape> {
+/// A solid under a scale of no negative factors; none where it has no size or none that is finite.
+fn scaled(solid: Solid, scale: Vec3) -> Option<Solid> {
     let around = scale.max_element();
     let across = scale.x.max(scale.z);
-    let solid = |sizes: &[f32]| sizes.iter().all(|&size| size.is_finite() && size > 0.0);
-    let (shape, is_solid) = match shape {
-        ColliderShape::Sphere(Sphere { radius }) => {
+    let all_positive = |sizes: &[f32]| sizes.iter().all(|&size| size.is_finite() && size > 0.0);
+    let (solid, has_size) = match solid {
+        Solid::Sphere(Sphere { radius }) => {
             let radius = radius * around;
-            (ColliderShape::Sphere(Sphere { radius }), solid(&[radius]))
+            (Solid::Sphere(Sphere { radius }), all_positive(&[radius]))
         }
-        ColliderShape::Cuboid(Cuboid { half_size }) => {
+        Solid::Cuboid(Cuboid { half_size }) => {
             let half_size = half_size * scale;
-            (ColliderShape::Cuboid(Cuboid { half_size }), solid(&half_size.to_array()))
+            (Solid::Cuboid(Cuboid { half_size }), all_positive(&half_size.to_array()))
         }
-        ColliderShape::Capsule(Capsule3d { radius, half_length }) => {
+        Solid::Capsule(Capsule3d { radius, half_length }) => {
             let (radius, half_length) = (radius * across, half_length * scale.y);
-            let is_solid = solid(&[radius]) && half_length.is_finite() && half_length >= 0.0;
-            (ColliderShape::Capsule(Capsule3d { radius, half_length }), is_solid)
+            let has_size = all_positive(&[radius]) && half_length.is_finite() && half_length >= 0.0;
+            (Solid::Capsule(Capsule3d { radius, half_length }), has_size)
         }
-        ColliderShape::Cylinder(Cylinder { radius, half_height }) => {
+        Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length }) => {
+            let (radius_top, radius_bottom) = (radius_top * across, radius_bottom * across);
+            let half_length = half_length * scale.y;
+            let has_size = all_positive(&[radius_top, radius_bottom]) && half_length.is_finite() && half_length >= 0.0;
+            (Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length }), has_size)
+        }
+        Solid::Cone(Cone { radius, height }) => {
+            let (radius, height) = (radius * across, height * scale.y);
+            (Solid::Cone(Cone { radius, height }), all_positive(&[radius, height]))
+        }
+        Solid::Cylinder(Cylinder { radius, half_height }) => {
             let (radius, half_height) = (radius * across, half_height * scale.y);
-            (ColliderShape::Cylinder(Cylinder { radius, half_height }), solid(&[radius, half_height]))
+            (Solid::Cylinder(Cylinder { radius, half_height }), all_positive(&[radius, half_height]))
         }
-        ColliderShape::HalfSpace(_) => (shape, solid(&[around])),
+        Solid::HalfSpace(_) => (solid, all_positive(&[around])),
     };
-    is_solid.then_some(shape)
+    has_size.then_some(solid)
 }
 
 /// What is remembered of a collider from step to step.
@@ -153,10 +190,11 @@ impl Obstacles {
         let origin = Vec3A::from(origin);
         let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - origin, pose.rotation);
         near.clear();
-        near.extend(self.list.iter().filter(|&&(_, layers, _)| layers & mask != 0).map(|&(_, _, obstacle)| Obstacle {
+        let selected = self.list.iter().filter(|(_, layers, _)| layers & mask != 0);
+        near.extend(selected.map(|(_, _, obstacle)| Obstacle {
             start: relative(obstacle.start),
             end: relative(obstacle.end),
-            ..obstacle
+            ..obstacle.clone()
         }));
     }
 }
@@ -171,7 +209,7 @@ pub(crate) fn gather_obstacles(
     for (entity, collider, mut memory) in &mut colliders {
         let pose = poses.compute_global_transform(entity);
         let placed = pose.ok().and_then(|pose| collider.placed(pose.affine()));
-        let Some((shape, end)) = placed else {
+        let Some((solid, end)) = placed else {
             if !memory.warned {
                 warn!(
                     "collider {entity} is left out: give its shape, friction and transform finite values, and its \
@@ -183,7 +221,8 @@ pub(crate) fn gather_obstacles(
         };
         let start = memory.pose.unwrap_or(end);
         *memory = ColliderMemory { pose: Some(end), warned: false };
-        let obstacle = Obstacle { shape, start, end, friction: collider.friction };
+        let friction = collider.friction;
+        let obstacle = Obstacle { shape: Shape::Solid(solid), start, end, friction, body: None };
         obstacles.list.push((entity, collider.layers, obstacle));
     }
     // Contact comes out the same whatever order the world keeps its entities in.

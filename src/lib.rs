@@ -76,7 +76,7 @@ pub mod prelude {
     pub use crate::{
         build::grain::ATTRIBUTE_WARP,
         cloth::{Cloth, ClothFailed, ClothGravity, ClothReady, ClothReset, ClothSolver, ClothStatus, ResetCause},
-        collider::ClothCollider,
+        collider::{ClothCollider, ColliderShape},
         commands::ClothCommands,
         error::ClothError,
         fabric::{ClothSprings, Fabric, FabricPreset, file::FabricFileError, handle::FabricHandle},
@@ -84,7 +84,7 @@ pub mod prelude {
         grid::ClothGrid,
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
-        solver::{ColliderShape, LevelPass},
+        solver::{LevelPass, Solid, TaperedCapsule},
         state::ClothState,
         wind::{Wind, WindShape},
     };

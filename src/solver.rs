@@ -34,7 +34,11 @@ pub use constraint::{
     grab::{Grab, GrabTether},
     tether::{Tether, Tethers},
 };
-pub use contact::{ColliderShape, Obstacle};
+pub use contact::{
+    Body, Obstacle, Push, Shape,
+    mesh::{MeshShape, TriangleMesh},
+    solid::{Solid, TaperedCapsule},
+};
 pub use context::{Anchor, Method, StepContext, StepReport};
 pub use effort::Effort;
 pub use force::wind::{WindRegion, WindSource};

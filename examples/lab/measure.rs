@@ -3,7 +3,7 @@
 use std::{fs, io, path::Path, time::Instant};
 
 use bevy::math::Vec3A;
-use bevy_drape::solver::{self, Scratch, SpringKind, constraint::spring::strain};
+use bevy_drape::solver::{self, Scratch, Shape, SpringKind, constraint::spring::strain};
 use cpu_time::ThreadTime;
 use serde_json::{Value, json};
 
@@ -104,10 +104,10 @@ fn measure(scene: &Scene, microseconds: f64) -> Frame {
     let (_, p99, above) = strains.select_nth_unstable_by(at, f32::total_cmp);
     let (p99_strain, max_strain) = (*p99, above.iter().copied().fold(*p99, f32::max));
     let depth = |p: &Vec3A| {
-        let distances = scene
-            .obstacles
-            .iter()
-            .map(|obstacle| obstacle.shape.surface(obstacle.end.inverse().transform_point(*p)).distance);
+        let distances = scene.obstacles.iter().filter_map(|obstacle| match obstacle.shape {
+            Shape::Solid(solid) => Some(solid.surface(obstacle.end.inverse().transform_point(*p)).distance),
+            Shape::Mesh(_) => None,
+        });
         distances.fold(0.0, |deepest, distance| f32::max(deepest, -distance))
     };
     Frame {

@@ -11,7 +11,7 @@ use bevy_drape::{
     build,
     prelude::{ClothError, Fabric},
     solver::{
-        Anchor, ColliderShape, Effort, Elasticity, Material, Method, Obstacle, Particles, SpringConstants, SpringKind,
+        Anchor, Effort, Elasticity, Material, Method, Obstacle, Particles, Solid, SpringConstants, SpringKind,
         StepContext, Tethers, Topology,
     },
 };
@@ -105,11 +105,11 @@ pub fn drape(options: &Options, mesh: &MeshSource) -> io::Result<Scene> {
     }
     let obstacle = |shape, height: f32| {
         let pose = Isometry3d::from_translation(Vec3::Y * height);
-        Obstacle { shape, start: pose, end: pose, friction: 1.0 }
+        Obstacle::still(shape, pose)
     };
     scene.obstacles = vec![
-        obstacle(ColliderShape::Sphere(Sphere::new(0.3)), 0.15),
-        obstacle(ColliderShape::HalfSpace(InfinitePlane3d::default()), 0.0),
+        obstacle(Solid::Sphere(Sphere::new(0.3)), 0.15),
+        obstacle(Solid::HalfSpace(InfinitePlane3d::default()), 0.0),
     ];
     Ok(scene)
 }

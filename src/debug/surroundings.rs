@@ -8,7 +8,7 @@ use bevy::{
 use super::{ClothDebugConfig, Lines, Shown, palette};
 use crate::{
     collider::Obstacles,
-    solver::{ColliderShape, Obstacle, force::wind::add_air_velocity},
+    solver::{Obstacle, Shape, Solid, TaperedCapsule, force::wind::add_air_velocity},
     wind::Winds,
 };
 
@@ -17,17 +17,28 @@ const PLANE: (u32, f32) = (20, 0.5);
 
 /// Draws obstacles as the latest step saw them at its end.
 pub(super) fn draw_colliders(lines: &mut Lines, obstacles: &Obstacles) {
-    for &(_, _, Obstacle { shape, end: pose, .. }) in &obstacles.list {
-        match shape {
-            ColliderShape::Sphere(sphere) => drop(lines.primitive_3d(&sphere, pose, palette::COLLIDER)),
-            ColliderShape::Cuboid(cuboid) => lines.primitive_3d(&cuboid, pose, palette::COLLIDER),
-            ColliderShape::Capsule(capsule) => {
+    for (_, _, Obstacle { shape, end, .. }) in &obstacles.list {
+        let (Shape::Solid(solid), pose) = (shape, *end) else { continue };
+        match *solid {
+            Solid::Sphere(sphere) => drop(lines.primitive_3d(&sphere, pose, palette::COLLIDER)),
+            Solid::Cuboid(cuboid) => lines.primitive_3d(&cuboid, pose, palette::COLLIDER),
+            Solid::Capsule(capsule) => {
                 lines.primitive_3d(&capsule, pose, palette::COLLIDER).resolution(12);
             }
-            ColliderShape::Cylinder(cylinder) => {
+            Solid::Cylinder(cylinder) => {
                 lines.primitive_3d(&cylinder, pose, palette::COLLIDER).resolution(24);
             }
-            ColliderShape::HalfSpace(plane) => {
+            Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length }) => {
+                for (height, radius) in [(half_length, radius_top), (-half_length, radius_bottom)] {
+                    lines.sphere(pose * Isometry3d::from_translation(Vec3::Y * height), radius, palette::COLLIDER);
+                }
+                let side = ConicalFrustum { radius_top, radius_bottom, height: 2.0 * half_length };
+                lines.primitive_3d(&side, pose, palette::COLLIDER);
+            }
+            Solid::Cone(cone) => {
+                lines.primitive_3d(&cone, pose, palette::COLLIDER);
+            }
+            Solid::HalfSpace(plane) => {
                 let (cells, spacing) = PLANE;
                 let plane = Plane3d { normal: plane.normal, ..default() };
                 let drawn = lines.primitive_3d(&plane, pose, palette::COLLIDER);

@@ -8,31 +8,80 @@
 
 use core::ops::Range;
 
-use bevy::math::{Isometry3d, Quat, Vec3A};
+use bevy::math::{Isometry3d, Mat3A, Quat, Vec3A};
 
 use super::{Lanes, Particles, StepContext};
 
-pub mod shape;
+pub mod mesh;
+pub mod solid;
 
 /// The way that a cloth may gain on an obstacle within a step by what pulls and pushes at it, m.
 const GAINED: f32 = 0.01;
 
-pub use shape::{ColliderShape, Surface};
+pub use mesh::MeshShape;
+pub use solid::{Solid, Surface};
 
-/// A solid that cloth can't enter, on its way over one step.
+/// The shape of an obstacle, m, in its own frame.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// One whose signed distance has a formula.
+    Solid(Solid),
+    /// Triangles.
+    Mesh(MeshShape),
+}
+
+impl From<Solid> for Shape {
+    fn from(solid: Solid) -> Self {
+        Self::Solid(solid)
+    }
+}
+
+/// What it takes to move an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Inverse mass, 1/kg.
+    pub inverse_mass: f32,
+    /// Inverse of the tensor of inertia about the centre of mass, along the world's axes, 1/(kg m²).
+    pub inverse_inertia: Mat3A,
+    /// Centre of mass at the start of the step, m, relative to the cloth's origin.
+    pub centre: Vec3A,
+}
+
+/// What a cloth has given to a body within a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Push {
+    /// Momentum, N s.
+    pub linear: Vec3A,
+    /// Angular momentum about the body's centre of mass, N m s.
+    pub angular: Vec3A,
+}
+
+/// Something that cloth can't enter, on its way over one step.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
     /// Its shape.
-    pub shape: ColliderShape,
+    pub shape: Shape,
     /// Where it is when the step starts, m, relative to the cloth's origin.
     pub start: Isometry3d,
     /// Where it is when the step ends.
     pub end: Isometry3d,
     /// Factor on the cloth's friction, no unit.
     pub friction: f32,
+    /// What it takes to move it. None for what no cloth moves.
+    pub body: Option<Body>,
 }
 
 impl Obstacle {
+    /// One that stays where it is, which no cloth moves.
+    pub fn still(shape: impl Into<Shape>, pose: Isometry3d) -> Self {
+        Self::moving(shape, pose, pose)
+    }
+
+    /// One that goes from `start` to `end`, which no cloth moves.
+    pub fn moving(shape: impl Into<Shape>, start: Isometry3d, end: Isometry3d) -> Self {
+        Self { shape: shape.into(), start, end, friction: 1.0, body: None }
+    }
+
     /// Pose at the fraction `t` (0..=1) of the step.
     fn pose(&self, t: f32) -> Isometry3d {
         if self.start == self.end {
@@ -59,10 +108,10 @@ pub(super) fn is_any_near(particles: &Particles, ctx: &StepContext, dt: f32) -> 
     // A step ahead, and once more for what it gains in speed.
     let reach = radius + ctx.contact_distance() + 2.0 * fastest * dt + GAINED;
     ctx.obstacles.iter().any(|obstacle| {
-        let Obstacle { start, end, shape, .. } = obstacle;
+        let Obstacle { start, end, shape: Shape::Solid(solid), .. } = obstacle else { return true };
         let way = start.translation.distance(end.translation);
         let is_reached =
-            |pose: &Isometry3d| shape.surface(pose.inverse().transform_point(centre)).distance <= reach + way;
+            |pose: &Isometry3d| solid.surface(pose.inverse().transform_point(centre)).distance <= reach + way;
         // What turns sweeps over more than it covers at both ends.
         start.rotation != end.rotation || is_reached(start) || is_reached(end)
     })
@@ -73,15 +122,16 @@ pub(super) fn is_any_near(particles: &Particles, ctx: &StepContext, dt: f32) -> 
 pub(super) fn project(lanes: &mut Lanes, ctx: &StepContext, span: Range<f32>) -> u32 {
     let mut contacts = 0;
     for obstacle in ctx.obstacles {
-        let moving = MovingShape::new(obstacle, ctx.contact_distance(), span.clone());
+        let Shape::Solid(solid) = obstacle.shape else { continue };
+        let moving = MovingShape::new(solid, obstacle, ctx.contact_distance(), span.clone());
         let friction = ctx.material.friction * obstacle.friction;
         for i in 0..lanes.slot_count() {
             if lanes.inverse_mass(i) == 0.0 {
                 continue;
             }
             let (mut position, mut previous) = (lanes.position.get(i), lanes.previous.get(i));
-            if let Some(push) = moving.push(position, previous) {
-                push.apply(&mut position, &mut previous, friction);
+            if let Some(correction) = moving.correction(position, previous) {
+                correction.apply(&mut position, &mut previous, friction);
                 lanes.position.set(i, position);
                 lanes.previous.set(i, previous);
                 contacts += 1;
@@ -93,7 +143,7 @@ pub(super) fn project(lanes: &mut Lanes, ctx: &StepContext, span: Range<f32>) ->
 
 /// An obstacle's shape within one substep.
 struct MovingShape {
-    shape: ColliderShape,
+    shape: Solid,
     /// Distance that particles keep from it, m.
     distance: f32,
     start: Isometry3d,
@@ -105,7 +155,7 @@ struct MovingShape {
 }
 
 /// What brings a particle back to the surface.
-struct Push {
+struct Correction {
     /// Outward normal of the surface.
     normal: Vec3A,
     /// How far to push along it, m.
@@ -117,24 +167,16 @@ struct Push {
 }
 
 impl MovingShape {
-    fn new(obstacle: &Obstacle, distance: f32, span: Range<f32>) -> Self {
+    fn new(shape: Solid, obstacle: &Obstacle, distance: f32, span: Range<f32>) -> Self {
         let (start, end) = (obstacle.pose(span.start), obstacle.pose(span.end));
         // |q1 - q0| is half of the angle, to first order, on the shorter of the two ways around.
         let (q0, q1) = (start.rotation, end.rotation);
         let turn = 2.0 * shorter_way(q0, q1);
-        Self {
-            shape: obstacle.shape,
-            distance,
-            from_world_start: start.inverse(),
-            from_world_end: end.inverse(),
-            start,
-            end,
-            turn,
-        }
+        Self { shape, distance, from_world_start: start.inverse(), from_world_end: end.inverse(), start, end, turn }
     }
 
-    /// The push that a particle needs which went from `previous` to `position`, if it needs one.
-    fn push(&self, position: Vec3A, previous: Vec3A) -> Option<Push> {
+    /// The correction that a particle needs which went from `previous` to `position`, if it needs one.
+    fn correction(&self, position: Vec3A, previous: Vec3A) -> Option<Correction> {
         let local = self.from_world_end.transform_point(position);
         let after = self.surface(local);
         // A particle that is farther away than it can have come this substep is left alone.
@@ -163,7 +205,7 @@ impl MovingShape {
             self.end.transform_point(touched) - self.start.transform_point(touched)
         };
         let normal = self.end.rotation * normal;
-        Some(Push { normal, depth, old_depth: old_depth.min(depth), surface_way })
+        Some(Correction { normal, depth, old_depth: old_depth.min(depth), surface_way })
     }
 
     /// The surface that particles stay out of, seen from `local`: the shape and the distance kept around it.
@@ -193,7 +235,7 @@ impl MovingShape {
     }
 }
 
-impl Push {
+impl Correction {
     fn apply(&self, position: &mut Vec3A, previous: &mut Vec3A, friction: f32) {
         *position += self.normal * self.depth;
         // What was inside before this substep leaves without gaining speed from it.

@@ -134,8 +134,7 @@ fn steps_of_ten_seconds_are_survived() {
     let mut app = headless();
     app.world_mut().resource_mut::<Time<Virtual>>().set_max_delta(core::time::Duration::from_secs(100));
     set_rates(&mut app, 10.0, 10.0);
-    app.world_mut()
-        .spawn((ClothCollider::from(ColliderShape::Sphere(Sphere::new(0.3))), Transform::from_xyz(0.0, -0.4, 0.0)));
+    app.world_mut().spawn((ClothCollider::from(Solid::Sphere(Sphere::new(0.3))), Transform::from_xyz(0.0, -0.4, 0.0)));
     let cloth = spawn_cloth(&mut app, GRID, Pins::corners());
     run(&mut app, 1);
     // A tenth of a second of free fall at most, not ten.

@@ -6,7 +6,7 @@ use bevy::{
 };
 use bevy_drape::{
     prelude::{ClothGrip, ClothSprings},
-    solver::{ColliderShape, Material, Method, Obstacle},
+    solver::{Material, Method, Obstacle, Shape, Solid},
 };
 use proptest::prelude::*;
 
@@ -15,9 +15,9 @@ use crate::{
     grabs::hand,
 };
 
-fn still(shape: ColliderShape, place: Vec3) -> Obstacle {
+fn still(shape: Solid, place: Vec3) -> Obstacle {
     let pose = Isometry3d::from_translation(place);
-    Obstacle { shape, start: pose, end: pose, friction: 1.0 }
+    Obstacle::still(shape, pose)
 }
 
 fn cotton(friction: f32, thickness: f32) -> Material {
@@ -27,7 +27,8 @@ fn cotton(friction: f32, thickness: f32) -> Material {
 /// How deep the deepest particle is below the surface that it should keep to, m.
 fn depth(bed: &Bed) -> f32 {
     let depth_in = |obstacle: &Obstacle, p: Vec3A| {
-        bed.material.thickness - obstacle.shape.surface(obstacle.end.inverse().transform_point(p)).distance
+        let Shape::Solid(solid) = obstacle.shape else { return 0.0 };
+        bed.material.thickness - solid.surface(obstacle.end.inverse().transform_point(p)).distance
     };
     let particles = bed.particles.position.iter();
     particles.flat_map(|&p| bed.obstacles.iter().map(move |o| depth_in(o, p))).fold(0.0, f32::max)
@@ -46,7 +47,7 @@ fn slid(method: Method, friction: f32, slope: f32) -> f32 {
         *position = turn * *position;
     }
     let normal = Dir3::new(turn * Vec3::Y).unwrap();
-    bed.obstacles = vec![still(ColliderShape::HalfSpace(InfinitePlane3d { normal }), Vec3::ZERO)];
+    bed.obstacles = vec![still(Solid::HalfSpace(InfinitePlane3d { normal }), Vec3::ZERO)];
     bed.run(2.0);
     bed.centre().length()
 }
@@ -79,8 +80,8 @@ fn a_cloth_on_a_sphere_stays_on_it_outside_of_it_and_comes_to_rest() {
             position.y += 0.75;
         }
         bed.obstacles = vec![
-            still(ColliderShape::Sphere(Sphere::new(0.3)), Vec3::Y * 0.15),
-            still(ColliderShape::HalfSpace(InfinitePlane3d::default()), Vec3::ZERO),
+            still(Solid::Sphere(Sphere::new(0.3)), Vec3::Y * 0.15),
+            still(Solid::HalfSpace(InfinitePlane3d::default()), Vec3::ZERO),
         ];
         for _ in 0..300 {
             bed.step(1.0 / 60.0);
@@ -96,7 +97,7 @@ fn a_cloth_on_a_sphere_stays_on_it_outside_of_it_and_comes_to_rest() {
 fn a_cloth_dropped_flat_does_not_bounce() {
     for method in STABLE {
         let mut bed = sheet(method, 6, cotton(0.5, 0.01));
-        bed.obstacles = vec![still(ColliderShape::HalfSpace(InfinitePlane3d::default()), Vec3::NEG_Y * 0.5)];
+        bed.obstacles = vec![still(Solid::HalfSpace(InfinitePlane3d::default()), Vec3::NEG_Y * 0.5)];
         bed.run(0.5);
         for _ in 0..60 {
             bed.step(1.0 / 60.0);
@@ -109,7 +110,7 @@ fn a_cloth_dropped_flat_does_not_bounce() {
 fn a_cloth_is_lifted_off_by_an_upward_push_without_sticking() {
     for method in STABLE {
         let mut bed = sheet(method, 6, cotton(0.9, 0.01));
-        bed.obstacles = vec![still(ColliderShape::HalfSpace(InfinitePlane3d::default()), Vec3::ZERO)];
+        bed.obstacles = vec![still(Solid::HalfSpace(InfinitePlane3d::default()), Vec3::ZERO)];
         bed.run(0.5);
         bed.gravity = Vec3A::Y * 2.0;
         let start = bed.centre().y;
@@ -120,11 +121,11 @@ fn a_cloth_is_lifted_off_by_an_upward_push_without_sticking() {
 }
 
 /// A free cloth in the way of an obstacle that comes down at 10 m/s for a fifth of a second.
-fn struck(method: Method, shape: ColliderShape) -> Bed {
+fn struck(method: Method, shape: Solid) -> Bed {
     let mut bed = Bed { gravity: Vec3A::ZERO, ..sheet(method, 16, cotton(0.3, 0.005)) };
     for frame in 0..12 {
         let place = |frame: i32| Isometry3d::from_translation(Vec3::Y * (1.0 - frame as f32 * 10.0 / 60.0));
-        bed.obstacles = vec![Obstacle { shape, start: place(frame), end: place(frame + 1), friction: 1.0 }];
+        bed.obstacles = vec![Obstacle::moving(shape, place(frame), place(frame + 1))];
         bed.step(1.0 / 60.0);
         assert!(depth(&bed) < 1e-4, "{method:?}, frame {frame}: {} m", depth(&bed));
     }
@@ -134,10 +135,10 @@ fn struck(method: Method, shape: ColliderShape) -> Bed {
 #[test]
 fn an_obstacle_at_ten_metres_a_second_pushes_and_is_not_passed() {
     let shapes = [
-        ColliderShape::Sphere(Sphere::new(0.2)),
-        ColliderShape::Capsule(Capsule3d::new(0.2, 0.4)),
-        ColliderShape::Cylinder(Cylinder::new(0.8, 0.005)),
-        ColliderShape::Cuboid(Cuboid::new(1.5, 0.004, 1.5)),
+        Solid::Sphere(Sphere::new(0.2)),
+        Solid::Capsule(Capsule3d::new(0.2, 0.4)),
+        Solid::Cylinder(Cylinder::new(0.8, 0.005)),
+        Solid::Cuboid(Cuboid::new(1.5, 0.004, 1.5)),
     ];
     for (method, shape) in STABLE.into_iter().flat_map(|method| shapes.map(|shape| (method, shape))) {
         let bed = struck(method, shape);
@@ -148,7 +149,7 @@ fn an_obstacle_at_ten_metres_a_second_pushes_and_is_not_passed() {
 }
 
 /// How far a shape reaches down from its centre, m.
-fn shape_reach(shape: ColliderShape) -> f32 {
+fn shape_reach(shape: Solid) -> f32 {
     -shape.surface(Vec3A::NEG_Y * 10.0).distance + 10.0
 }
 
@@ -159,9 +160,9 @@ fn a_turning_table_takes_a_cloth_along() {
         let speed = 1.0;
         for frame in 0..60 {
             let turn = |frame: i32| Quat::from_rotation_y(speed * frame as f32 / 60.0);
-            let shape = ColliderShape::Cylinder(Cylinder::new(2.0, 0.2));
+            let shape = Solid::Cylinder(Cylinder::new(2.0, 0.2));
             let lowered = |frame: i32| Isometry3d::new(Vec3::NEG_Y * 0.1, turn(frame));
-            bed.obstacles = vec![Obstacle { shape, start: lowered(frame), end: lowered(frame + 1), friction: 1.0 }];
+            bed.obstacles = vec![Obstacle::moving(shape, lowered(frame), lowered(frame + 1))];
             bed.step(1.0 / 60.0);
         }
         let corner = bed.particles.position[0];
@@ -174,7 +175,7 @@ fn a_turning_table_takes_a_cloth_along() {
 fn a_cloth_that_starts_inside_comes_out_without_being_thrown() {
     for method in STABLE {
         let mut bed = Bed { gravity: Vec3A::ZERO, ..sheet(method, 16, cotton(0.5, 0.0)) };
-        bed.obstacles = vec![still(ColliderShape::Sphere(Sphere::new(0.2)), Vec3::Y * 0.05)];
+        bed.obstacles = vec![still(Solid::Sphere(Sphere::new(0.2)), Vec3::Y * 0.05)];
         bed.run(1.0);
         assert!(depth(&bed) < 1e-5);
         assert!(bed.fastest() < 5.0, "{method:?}: {} m/s", bed.fastest());
@@ -185,7 +186,7 @@ fn a_cloth_that_starts_inside_comes_out_without_being_thrown() {
 fn a_hand_takes_no_resting_cloth_through_a_board_in_one_step() {
     for method in STABLE {
         let mut bed = Bed { gravity: Vec3A::ZERO, ..sheet(method, 16, cotton(0.5, 0.0)) };
-        bed.obstacles = vec![still(ColliderShape::Cuboid(Cuboid::new(4.0, 0.02, 4.0)), Vec3::NEG_Y * 0.05)];
+        bed.obstacles = vec![still(Solid::Cuboid(Cuboid::new(4.0, 0.02, 4.0)), Vec3::NEG_Y * 0.05)];
         let grip = ClothGrip { max_force: 1000.0, ..default() };
         bed.grabs = vec![hand(&bed, 200, [0.4, 0.3, 0.3], grip)];
         // As fast as a pointer leads it.
@@ -214,11 +215,11 @@ proptest! {
         friction in 0.0_f32..1.0,
     ) {
         let shape = match kind {
-            0 => ColliderShape::Sphere(Sphere::new(size[0])),
-            1 => ColliderShape::Cuboid(Cuboid::new(size[0], size[1], size[2])),
-            2 => ColliderShape::Capsule(Capsule3d::new(size[0], size[1])),
-            3 => ColliderShape::Cylinder(Cylinder::new(size[0], size[1])),
-            _ => ColliderShape::HalfSpace(InfinitePlane3d::default()),
+            0 => Solid::Sphere(Sphere::new(size[0])),
+            1 => Solid::Cuboid(Cuboid::new(size[0], size[1], size[2])),
+            2 => Solid::Capsule(Capsule3d::new(size[0], size[1])),
+            3 => Solid::Cylinder(Cylinder::new(size[0], size[1])),
+            _ => Solid::HalfSpace(InfinitePlane3d::default()),
         };
         let mut bed = sheet(method, 16, cotton(friction, 0.003));
         for frame in 0..20 {
@@ -226,7 +227,7 @@ proptest! {
                 Vec3::from(start) - Vec3::Y * 1.5 + Vec3::from(way) * frame as f32,
                 Quat::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), turn * frame as f32),
             );
-            bed.obstacles = vec![Obstacle { shape, start: pose(frame), end: pose(frame + 1), friction: 1.0 }];
+            bed.obstacles = vec![Obstacle::moving(shape, pose(frame), pose(frame + 1))];
             bed.step(1.0 / 60.0);
             prop_assert!(bed.particles.is_finite());
             prop_assert!(depth(&bed) < 1e-4, "frame {}: {} m inside", frame, depth(&bed));

@@ -9,7 +9,7 @@ use bevy::{
 };
 use bevy_drape::{
     prelude::{ClothGrid, ClothGrip, ClothSprings, Fabric},
-    solver::{ColliderShape, Method, Obstacle},
+    solver::{Method, Obstacle, Solid},
 };
 
 use crate::{
@@ -21,8 +21,7 @@ fn scene(method: Method) -> Bed {
     let bed = Bed::lying(18, springs_in_air(ClothSprings::default())).pinned([0, 17]).tethered(&[0, 17]).with_levels();
     let mut bed = Bed { method, ..bed };
     let pose = bevy::math::Isometry3d::from_translation(Vec3::new(0.0, -0.5, -0.3));
-    bed.obstacles =
-        vec![Obstacle { shape: ColliderShape::Sphere(Sphere::new(0.2)), start: pose, end: pose, friction: 1.0 }];
+    bed.obstacles = vec![Obstacle::still(Solid::Sphere(Sphere::new(0.2)), pose)];
     bed.particles.force[200] = Vec3A::new(0.01, 0.02, 0.0);
     assert!(!bed.topology.levels.is_empty());
     bed

@@ -7,7 +7,7 @@ use bevy::{
 use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothGrip, ClothSprings},
-    solver::{ColliderShape, Grab, Material, Method, Obstacle, Tether, Tethers, measure},
+    solver::{Grab, Material, Method, Obstacle, Solid, Tether, Tethers, measure},
 };
 
 use crate::bench_bed::{ALL, Bed, STABLE, springs_in_air};
@@ -139,13 +139,13 @@ fn a_jerk_of_a_metre_neither_tears_nor_throws_the_cloth() {
 
 #[test]
 fn a_hand_pulls_no_cloth_into_an_obstacle() {
-    let ball = ColliderShape::Sphere(Sphere::new(0.2));
-    let board = ColliderShape::Cuboid(Cuboid::new(2.0, 0.02, 2.0));
+    let ball = Solid::Sphere(Sphere::new(0.2));
+    let board = Solid::Cuboid(Cuboid::new(2.0, 0.02, 2.0));
     for (method, shape) in STABLE.into_iter().flat_map(|method| [(method, ball), (method, board)]) {
         let place = Isometry3d::IDENTITY;
         let mut bed = sheet(method, 32);
         bed.particles.position.iter_mut().for_each(|p| p.y += 0.25);
-        bed.obstacles = vec![Obstacle { shape, start: place, end: place, friction: 1.0 }];
+        bed.obstacles = vec![Obstacle::still(shape, place)];
         bed.run(1.0);
         let mut bed = held(bed, ClothGrip::default());
         lead(&mut bed, Vec3A::NEG_Y, 1.0, |bed| {
@@ -153,7 +153,7 @@ fn a_hand_pulls_no_cloth_into_an_obstacle() {
             assert!(deepest > 0.0, "{method:?}, {shape:?}: {deepest} m");
         });
         let above = bed.particles.position.iter().filter(|p| p.y > 0.0).count();
-        let is_ball = matches!(shape, ColliderShape::Sphere(_));
+        let is_ball = matches!(shape, Solid::Sphere(_));
         assert!(above > 32 * 16 || is_ball, "{method:?}: {above} particles are above the board");
     }
 }

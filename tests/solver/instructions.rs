@@ -6,7 +6,7 @@ use bevy::{
 };
 use bevy_drape::{
     prelude::{ClothGrid, ClothGrip, ClothSprings, Fabric},
-    solver::{ColliderShape, Instructions, Material, Method, Obstacle, WindRegion, WindSource, force::wind::Gusts},
+    solver::{Instructions, Material, Method, Obstacle, Solid, WindRegion, WindSource, force::wind::Gusts},
 };
 
 use crate::{
@@ -44,8 +44,7 @@ fn scene(mesh: impl Into<Mesh>, method: Method, material: Material) -> Bed {
     let velocity = Vec3A::new(1.0, 2.0, 6.0);
     bed.winds = vec![WindSource { velocity, gusts, region, origin, travelled: DVec3::ZERO, gusts_passed: 0.0 }];
     let pose = Isometry3d::from_translation(Vec3::from(bed.centre()) + Vec3::new(0.0, -0.2, 0.2));
-    bed.obstacles =
-        vec![Obstacle { shape: ColliderShape::Sphere(Sphere::new(0.25)), start: pose, end: pose, friction: 1.0 }];
+    bed.obstacles = vec![Obstacle::still(Solid::Sphere(Sphere::new(0.25)), pose)];
     bed.grabs = vec![hand(&bed, 100, [0.2, 0.3, 0.5], ClothGrip::default())];
     bed.particles.force[20] = Vec3A::new(0.01, 0.02, 0.0);
     bed

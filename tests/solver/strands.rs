@@ -6,7 +6,7 @@ use bevy::{
 };
 use bevy_drape::{
     prelude::{ClothGrid, ClothSprings},
-    solver::{ColliderShape, Effort, Method, Obstacle, SpringKind, measure},
+    solver::{Effort, Method, Obstacle, Solid, SpringKind, measure},
 };
 
 use crate::bench_bed::{ALL, Bed, GRAVITY, STABLE, springs, springs_in_air};
@@ -181,8 +181,8 @@ fn less_strain_takes_no_fewer_substeps_and_a_finer_mesh_neither() {
 fn more_substeps_are_taken_near_an_obstacle_and_without_tethers() {
     let ground = |height: f32| {
         let pose = Isometry3d::from_translation(Vec3::Y * height);
-        let shape = ColliderShape::HalfSpace(InfinitePlane3d::default());
-        vec![Obstacle { shape, start: pose, end: pose, friction: 1.0 }]
+        let shape = Solid::HalfSpace(InfinitePlane3d::default());
+        vec![Obstacle::still(shape, pose)]
     };
     let mut bed = hung(16);
     bed.effort = Effort::to_hold(0.1, &bed.topology);

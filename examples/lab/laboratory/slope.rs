@@ -6,7 +6,7 @@ use bevy::{
 };
 use bevy_drape::{
     prelude::{ClothGrid, Fabric},
-    solver::{ColliderShape, Method, Obstacle},
+    solver::{Method, Obstacle, Solid},
 };
 
 use super::{
@@ -43,8 +43,8 @@ fn slides(case: &Case, fabric: &Fabric, angle: f32) -> bool {
     for position in &mut bed.particles.position {
         *position = turn * *position;
     }
-    let shape = ColliderShape::HalfSpace(InfinitePlane3d { normal: Dir3::new_unchecked(turn * Vec3::Y) });
-    bed.obstacles = vec![Obstacle { shape, start: Isometry3d::IDENTITY, end: Isometry3d::IDENTITY, friction: 1.0 }];
+    let shape = Solid::HalfSpace(InfinitePlane3d { normal: Dir3::new_unchecked(turn * Vec3::Y) });
+    bed.obstacles = vec![Obstacle::still(shape, Isometry3d::IDENTITY)];
     bed.run(2.0);
     bed.centre().length() > SLID
 }

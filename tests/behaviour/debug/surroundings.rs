@@ -27,11 +27,11 @@ fn arrows(app: &App) -> Vec<Line> {
 #[test]
 fn lines_of_colliders_lie_on_their_surface() {
     let pose = Transform::from_xyz(3.0, -2.0, 1.0).with_rotation(Quat::from_euler(EulerRot::XYZ, 0.4, -0.9, 1.3));
-    let colliders: [(ClothCollider, ColliderShape); 4] = [
-        (Sphere::new(0.4).into(), ColliderShape::Sphere(Sphere::new(0.8))),
-        (Cuboid::new(0.6, 1.0, 0.4).into(), ColliderShape::Cuboid(Cuboid::new(1.2, 2.0, 0.8))),
-        (Capsule3d::new(0.2, 0.8).into(), ColliderShape::Capsule(Capsule3d::new(0.4, 1.6))),
-        (Cylinder::new(0.3, 0.9).into(), ColliderShape::Cylinder(Cylinder::new(0.6, 1.8))),
+    let colliders: [(ClothCollider, Solid); 4] = [
+        (Sphere::new(0.4).into(), Solid::Sphere(Sphere::new(0.8))),
+        (Cuboid::new(0.6, 1.0, 0.4).into(), Solid::Cuboid(Cuboid::new(1.2, 2.0, 0.8))),
+        (Capsule3d::new(0.2, 0.8).into(), Solid::Capsule(Capsule3d::new(0.4, 1.6))),
+        (Cylinder::new(0.3, 0.9).into(), Solid::Cylinder(Cylinder::new(0.6, 1.8))),
     ];
     for (collider, twice) in colliders {
         let mut app = inside();

@@ -1,0 +1,164 @@
+//! Contact between two features that may touch: a point and a face, or two edges.
+//!
+//! ```text
+//!      0                 0 ----- 1
+//!      |  gap               |  gap
+//!   1 --- 2            2 ----- 3   across
+//!     \ /
+//!      3
+//! ```
+//!
+//! A pair remembers on which side of each other its features were. The direction between them turns with them, and where it
+//! turns around within a substep they have passed through each other, and go back. That is what keeps the order of layers.
+
+use bevy::math::Vec3A;
+
+use super::closest;
+
+/// Points that features are made of: particles of all cloths that may touch, then those of obstacles.
+#[derive(Clone, Debug, Default)]
+pub struct Points {
+    /// Where they are, m.
+    pub position: Vec<Vec3A>,
+    /// Where they were when the substep began, m.
+    pub previous: Vec<Vec3A>,
+    /// Inverse mass, 1/kg. Zero for those that nothing moves.
+    pub inverse_mass: Vec<f32>,
+}
+
+/// What kind of features a pair has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Features {
+    /// The first point and the face of the other three.
+    PointFace,
+    /// The edge of the first two points and that of the others.
+    EdgeEdge,
+}
+
+/// Two features that may touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    pub features: Features,
+    /// Number of each point.
+    pub points: [u32; 4],
+    /// Distance to keep, m.
+    pub distance: f32,
+    /// By how much more of it there is at the far end of the second edge, m: of a tapered obstacle.
+    pub taper: f32,
+    /// Coulomb friction, no unit.
+    pub friction: f32,
+    /// Distance when it was last looked at, m; negative after having passed through.
+    pub gap: f32,
+    /// Unit vector from the second feature to the first, on the side where it belongs.
+    pub normal: Vec3A,
+}
+
+/// How two features are to each other.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearest {
+    /// Weight of each point in the way from the second feature's closest point to the first's.
+    pub weights: [f32; 4],
+    /// That way, m.
+    pub between: Vec3A,
+}
+
+impl Features {
+    /// The closest points of two features.
+    #[inline]
+    pub fn nearest(self, [a, b, c, d]: [Vec3A; 4]) -> Nearest {
+        let weights = match self {
+            Self::PointFace => {
+                let on = closest::on_triangle(a, [b, c, d]);
+                [1.0, -on.x, -on.y, -on.z]
+            }
+            Self::EdgeEdge => {
+                let (s, t) = closest::on_edges([a, b], [c, d]);
+                [1.0 - s, s, t - 1.0, -t]
+            }
+        };
+        Nearest { weights, between: weighted(weights, [a, b, c, d]) }
+    }
+
+    /// Whether all of the first feature is farther than `distance` from all of the second along `normal`.
+    #[inline]
+    fn is_beyond(self, [a, b, c, d]: [Vec3A; 4], normal: Vec3A, distance: f32) -> bool {
+        let [a, b, c, d] = [normal.dot(a), normal.dot(b), normal.dot(c), normal.dot(d)];
+        match self {
+            Self::PointFace => a - b.max(c).max(d) > distance,
+            Self::EdgeEdge => a.min(b) - c.max(d) > distance,
+        }
+    }
+}
+
+/// The sum of points by their weights.
+#[inline]
+pub fn weighted(weights: [f32; 4], [a, b, c, d]: [Vec3A; 4]) -> Vec3A {
+    a * weights[0] + b * weights[1] + c * weights[2] + d * weights[3]
+}
+
+impl Pair {
+    /// Brings the features as far apart as they should be, with friction. Those that were nearer before part by no more than
+    /// `most_parted` (m). True where they touched.
+    #[inline]
+    pub fn solve(&mut self, points: &mut Points, most_parted: f32) -> bool {
+        let all = self.points.map(|i| i as usize);
+        let places = all.map(|i| points.position[i]);
+        let farthest = self.distance + self.taper.max(0.0);
+        if self.features.is_beyond(places, self.normal, farthest) {
+            self.gap = farthest;
+            return false;
+        }
+        let before = all.map(|i| points.previous[i]);
+        let Nearest { weights, between } = self.features.nearest(places);
+        let (direction, length) = between.normalize_and_length();
+        let (mut normal, mut gap) = if length > 0.0 { (direction, length) } else { (self.normal, 0.0) };
+        if normal.dot(self.normal) < 0.0 && (self.gap < 0.0 || self.has_passed(before, places)) {
+            (normal, gap) = (-normal, -gap);
+        }
+        // Of an edge's places, the far end is at weight 1.
+        let distance = match self.features {
+            Features::PointFace => self.distance,
+            Features::EdgeEdge => self.distance - self.taper * weights[3],
+        };
+        let target = distance.min(self.gap + most_parted);
+        self.normal = normal;
+        self.gap = gap;
+        if gap >= target {
+            return false;
+        }
+        let masses = all.map(|i| points.inverse_mass[i]);
+        let give: f32 = weights.iter().zip(masses).map(|(weight, w)| weight * weight * w).sum();
+        if give <= 0.0 {
+            return false;
+        }
+        let push = target - gap;
+        let slide = weighted(weights, places) - weighted(weights, before);
+        let slide = slide - normal * slide.dot(normal);
+        let hold = self.friction * push;
+        let length = slide.length();
+        let back = if length > hold { slide * (hold / length) } else { slide };
+        let change = (normal * push - back) / give;
+        for ((&i, weight), w) in all.iter().zip(weights).zip(masses) {
+            points.position[i] += change * (weight * w);
+        }
+        self.gap = target;
+        true
+    }
+
+    /// Whether the features met on their way from `before` to `after`.
+    fn has_passed(&self, before: [Vec3A; 4], after: [Vec3A; 4]) -> bool {
+        let [b0, b1, b2, b3] = before;
+        let [a0, a1, a2, a3] = after;
+        // Six times the volume between the four points is zero where they are in one plane.
+        let volume = |[p, q, r, s]: [Vec3A; 4]| (q - p).cross(r - p).dot(s - p);
+        let (start, end) = (volume([b0, b1, b2, b3]), volume([a0, a1, a2, a3]));
+        let share = start / (start - end);
+        if !(0.0..=1.0).contains(&share) {
+            // Side by side in a plane, or around each other: nothing is known for sure.
+            return false;
+        }
+        let met = core::array::from_fn(|i| before[i].lerp(after[i], share));
+        let Nearest { between, .. } = self.features.nearest(met);
+        between.length() <= self.distance.max(1e-4)
+    }
+}

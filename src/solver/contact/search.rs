@@ -1,0 +1,166 @@
+//! Finds the pairs of features that may touch before the next search.
+
+use bevy::math::{Vec3, Vec3A};
+
+use super::{
+    pair::{Features, Nearest, Pair},
+    surface::{Bounds, Places, Surface, edges_of},
+};
+
+/// Where points are when a search is made, and where they go.
+#[derive(Clone, Copy, Debug)]
+pub struct Ways<'a> {
+    /// Where they are, m.
+    pub position: &'a [Vec3A],
+    /// How far they will come before the next search if nothing stops them, m.
+    pub way: &'a [Vec3A],
+}
+
+impl Ways<'_> {
+    /// Box around the way of a triangle.
+    #[inline]
+    pub fn bounds(&self, triangle: [u32; 3]) -> Bounds {
+        let [a, b, c] = triangle.map(|i| {
+            let (start, way) = (self.position[i as usize], self.way[i as usize]);
+            Bounds { low: start.min(start + way), high: start.max(start + way) }
+        });
+        a.union(b).union(c)
+    }
+}
+
+/// One of two surfaces that may touch.
+#[derive(Clone, Copy, Debug)]
+pub struct Side<'a> {
+    pub surface: &'a Surface,
+    pub places: &'a Places,
+    pub ways: Ways<'a>,
+    /// Number of the first of its points among all.
+    pub first: u32,
+    /// How sharp a corner or edge has to be that the other side may be caught on.
+    pub sharper_than: f32,
+    /// Whether it has faces, and not edges alone.
+    pub has_faces: bool,
+    /// Distance in m that each point has around it, if any has.
+    pub radii: &'a [f32],
+}
+
+impl Side<'_> {
+    fn radius(&self, point: u32) -> f32 {
+        self.radii.get(point as usize).copied().unwrap_or(0.0)
+    }
+}
+
+/// Distances of a search.
+#[derive(Clone, Copy, Debug)]
+pub struct Reach<'a> {
+    /// Distance that features are to keep, m.
+    pub distance: f32,
+    /// By how much features may come off their ways towards each other before the next search, m.
+    pub slack: f32,
+    /// Friction between the features, no unit.
+    pub friction: f32,
+    /// Where the points of a surface that may touch itself are at rest, m. What is nearer at rest than the distance may be
+    /// so.
+    pub rest: Option<&'a [Vec3]>,
+}
+
+/// Share of a rest distance that features of one cloth keep at most: they aren't to push each other at rest.
+const AT_REST: f32 = 0.9;
+
+/// A pair that has been found.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    pub pair: Pair,
+    /// Which sides the first and the second feature are of.
+    pub is_first_of_a: bool,
+    /// Triangle of the second feature, of a point and a face.
+    pub face: usize,
+    /// How far apart the features are, m, and where.
+    pub length: f32,
+    pub nearest: Nearest,
+    /// How far they may come nearer to each other, m.
+    pub approach: f32,
+}
+
+/// Shows the pairs of features of triangle `s` of `a` and triangle `t` of `b` that may touch.
+pub fn pairs_between(
+    (a, s): (&Side, usize),
+    (b, t): (&Side, usize),
+    reach: &Reach,
+    mut found: impl FnMut(Found),
+) {
+    let (triangle, other) = (a.surface.triangles[s], b.surface.triangles[t]);
+    let (mine, theirs) = (&a.surface.owned[s], &b.surface.owned[t]);
+    let is_same = reach.rest.is_some();
+    if b.has_faces {
+        for (&corner, sharp) in triangle.iter().zip(mine.corners) {
+            if sharp > a.sharper_than && !(is_same && other.contains(&corner)) {
+                let points = [corner, other[0], other[1], other[2]];
+                found_between(Features::PointFace, [a, b, b, b], points, reach, |f| found(Found { face: t, ..f }));
+            }
+        }
+    }
+    if a.has_faces {
+        for (&corner, sharp) in other.iter().zip(theirs.corners) {
+            if sharp > b.sharper_than && !(is_same && triangle.contains(&corner)) {
+                let points = [corner, triangle[0], triangle[1], triangle[2]];
+                let first = |f| found(Found { is_first_of_a: false, face: s, ..f });
+                found_between(Features::PointFace, [b, a, a, a], points, reach, first);
+            }
+        }
+    }
+    for ([p, q], sharp) in edges_of(triangle).into_iter().zip(mine.edges) {
+        if sharp <= a.sharper_than {
+            continue;
+        }
+        for ([u, v], sharp) in edges_of(other).into_iter().zip(theirs.edges) {
+            if sharp > b.sharper_than && !(is_same && (p == u || p == v || q == u || q == v)) {
+                found_between(Features::EdgeEdge, [a, a, b, b], [p, q, u, v], reach, &mut found);
+            }
+        }
+    }
+}
+
+/// Shows a pair of features if it may touch.
+#[inline]
+fn found_between(
+    features: Features,
+    sides: [&Side; 4],
+    points: [u32; 4],
+    reach: &Reach,
+    found: impl FnOnce(Found),
+) {
+    let of = |i: usize| points[i] as usize;
+    let places: [Vec3A; 4] = core::array::from_fn(|i| sides[i].ways.position[of(i)]);
+    let [w0, w1, w2, w3] = core::array::from_fn(|i| sides[i].ways.way[of(i)]);
+    let (distance, taper) = match features {
+        Features::PointFace => (reach.distance + sides[0].radius(points[0]), 0.0),
+        Features::EdgeEdge => {
+            let near = sides[2].radius(points[2]);
+            (reach.distance + near, sides[3].radius(points[3]) - near)
+        }
+    };
+    let apart = |p: Vec3A, q: Vec3A| p.distance_squared(q);
+    let approach = match features {
+        Features::PointFace => apart(w0, w1).max(apart(w0, w2)).max(apart(w0, w3)),
+        Features::EdgeEdge => apart(w0, w2).max(apart(w0, w3)).max(apart(w1, w2)).max(apart(w1, w3)),
+    };
+    let approach = approach.sqrt() + reach.slack;
+    let nearest = features.nearest(places);
+    let farthest = distance + taper.max(0.0) + approach;
+    if nearest.between.length_squared() > farthest * farthest {
+        return;
+    }
+    let distance = match reach.rest {
+        Some(rest) => {
+            let at_rest = features.nearest(points.map(|i| Vec3A::from(rest[i as usize])));
+            distance.min(AT_REST * at_rest.between.length())
+        }
+        None => distance,
+    };
+    let (direction, length) = nearest.between.normalize_and_length();
+    let normal = if length > 0.0 { direction } else { Vec3A::Y };
+    let points = core::array::from_fn(|i| sides[i].first + points[i]);
+    let pair = Pair { features, points, distance, taper, friction: reach.friction, gap: length, normal };
+    found(Found { pair, is_first_of_a: true, face: 0, length, nearest, approach });
+}
