@@ -6,7 +6,9 @@ use bevy::{math::Mat3A, math::Vec3A, prelude::Mesh};
 use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothSprings, Fabric},
-    solver::{Anchor, Effort, Elasticity, Material, Method, Particles, Scratch, StepContext, Topology, step},
+    solver::{
+        Anchor, Effort, Elasticity, Material, Method, Particles, Scratch, SelfCollision, StepContext, Topology, step,
+    },
 };
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 
@@ -59,6 +61,10 @@ fn hang(criterion: &mut Criterion) {
             tethers: Some(&tethers),
             tether_slack: 0.002,
             margin: 0.005,
+            max_depenetration_velocity: 1.0,
+            self_collision: SelfCollision::Off,
+            self_distance: 0.004,
+            self_friction: 0.3,
             obstacles: &[],
             fluid_density: air,
             winds: &[],

@@ -6,7 +6,7 @@ use crate::{
     error::{ClothError, check},
     fabric::Fabric,
     pins::Pins,
-    solver::{Effort, LevelPass, Method, Topology},
+    solver::{Effort, LevelPass, Method, SelfCollision, Topology},
     state::ClothState,
 };
 
@@ -77,6 +77,16 @@ pub struct Cloth {
     /// Distance in m that the cloth keeps from obstacles beyond its fabric's thickness, 0 or more. 0.002 to 0.02: the more the
     /// larger its triangles are, so that no corner of an obstacle shows between its particles.
     pub collision_margin: f32,
+    /// The most in m/s that cloth which finds itself inside of an obstacle, or too near to other cloth, leaves it by,
+    /// greater than 0. 0.5 to 3: more gets out sooner, and looks like a blow.
+    pub max_depenetration_velocity: f32,
+    /// What of the cloth meets itself, and other cloths for which this isn't off either. Off by default, since it costs.
+    pub self_collision: SelfCollision,
+    /// Distance in m that parts of cloth keep from each other, greater than 0. 0.002 to 0.01. Parts that are nearer to each
+    /// other at rest stay so.
+    pub self_distance: f32,
+    /// Coulomb friction of cloth on cloth, no unit, 0 or more. 0.1 for silk, 0.4 for wool.
+    pub self_friction: f32,
     /// Which obstacles the cloth meets: those whose [`ClothCollider::layers`](crate::prelude::ClothCollider::layers)
     /// have a bit in common with it.
     pub collision_mask: u32,
@@ -95,6 +105,10 @@ impl Default for Cloth {
             max_velocity: 50.0,
             fluid_density: 1.225,
             collision_margin: 0.005,
+            max_depenetration_velocity: 1.0,
+            self_collision: SelfCollision::Off,
+            self_distance: 0.004,
+            self_friction: 0.3,
             collision_mask: u32::MAX,
         }
     }
@@ -144,7 +158,11 @@ impl Cloth {
         check("Cloth::max_velocity", self.max_velocity, self.max_velocity > 0.0, "greater than 0 m/s")?;
         let air = self.fluid_density;
         check("Cloth::fluid_density", air, air >= 0.0, "0 kg/m³ or greater")?;
-        check("Cloth::collision_margin", self.collision_margin, self.collision_margin >= 0.0, "0 m or greater")
+        check("Cloth::collision_margin", self.collision_margin, self.collision_margin >= 0.0, "0 m or greater")?;
+        let leaving = self.max_depenetration_velocity;
+        check("Cloth::max_depenetration_velocity", leaving, leaving > 0.0, "greater than 0 m/s")?;
+        check("Cloth::self_distance", self.self_distance, self.self_distance > 0.0, "greater than 0 m")?;
+        check("Cloth::self_friction", self.self_friction, self.self_friction >= 0.0, "0 or greater")
     }
 }
 

@@ -84,7 +84,7 @@ pub mod prelude {
         grid::ClothGrid,
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
-        solver::{LevelPass, Solid, TaperedCapsule},
+        solver::{LevelPass, SelfCollision, Solid, TaperedCapsule},
         state::ClothState,
         wind::{Wind, WindShape},
     };

@@ -39,7 +39,7 @@ pub use contact::{
     mesh::{MeshShape, TriangleMesh},
     solid::{Solid, TaperedCapsule},
 };
-pub use context::{Anchor, Method, StepContext, StepReport};
+pub use context::{Anchor, Method, SelfCollision, StepContext, StepReport};
 pub use effort::Effort;
 pub use force::wind::{WindRegion, WindSource};
 pub(crate) use lanes::Lanes;
@@ -50,6 +50,6 @@ pub use measure::{Energy, Strain};
 pub use particles::Particles;
 pub use scratch::Scratch;
 pub use simd::Instructions;
-pub use step::{MAX_TIME_STEP, step};
+pub use step::{MAX_TIME_STEP, Member, step, step_together};
 pub use topology::{Bend, BendBatch, Face, Grain, Spring, SpringBatch, SpringKind, Topology};
 pub use weave::Weave;

@@ -11,8 +11,8 @@ use bevy_drape::{
     build,
     prelude::{ClothError, Fabric},
     solver::{
-        Anchor, Effort, Elasticity, Material, Method, Obstacle, Particles, Solid, SpringConstants, SpringKind,
-        StepContext, Tethers, Topology,
+        Anchor, Effort, Elasticity, Material, Method, Obstacle, Particles, SelfCollision, Solid, SpringConstants,
+        SpringKind, StepContext, Tethers, Topology,
     },
 };
 
@@ -71,6 +71,10 @@ impl Scene {
             tethers: self.tethers.as_ref(),
             tether_slack: options.tether_slack,
             margin: 0.0,
+            max_depenetration_velocity: 1.0,
+            self_collision: SelfCollision::Off,
+            self_distance: 0.004,
+            self_friction: 0.3,
             obstacles: &self.obstacles,
             fluid_density: 0.0,
             winds: &[],

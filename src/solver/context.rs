@@ -1,6 +1,10 @@
 //! What surrounds a cloth during one step.
 
-use bevy::{math::Vec3A, tasks::TaskPool};
+use bevy::{
+    math::Vec3A,
+    reflect::{Reflect, std_traits::ReflectDefault},
+    tasks::TaskPool,
+};
 
 use super::{Effort, Grab, Material, Obstacle, Tethers, WindSource};
 
@@ -15,6 +19,19 @@ pub enum Method {
     Xpbd,
     /// Forces and symplectic Euler, the textbook form: accurate, and costly where springs are stiff.
     Explicit,
+}
+
+/// What of a cloth meets itself and other cloths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Reflect)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub enum SelfCollision {
+    /// Nothing: it passes through itself.
+    #[default]
+    Off,
+    /// Its particles, as balls: fast, and good enough where nothing thin or quick comes between them.
+    Particles,
+    /// Its triangles and edges: folds, layers and knots stay apart.
+    Robust,
 }
 
 /// The way of a fixed particle over one step, m, relative to the cloth's origin.
@@ -55,6 +72,14 @@ pub struct StepContext<'a> {
     pub tether_slack: f32,
     /// Distance that particles keep from obstacles beyond the cloth's thickness, m.
     pub margin: f32,
+    /// The most that a particle leaves an obstacle by, or another part of cloth, that it is inside of, m/s.
+    pub max_depenetration_velocity: f32,
+    /// What of the cloth meets itself and other cloths.
+    pub self_collision: SelfCollision,
+    /// Distance that parts of cloth keep from each other, m.
+    pub self_distance: f32,
+    /// Friction of cloth on cloth, no unit.
+    pub self_friction: f32,
     /// Obstacles and their way.
     pub obstacles: &'a [Obstacle],
     /// Density of the air, kg/m³. Zero for a vacuum.

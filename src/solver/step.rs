@@ -1,6 +1,6 @@
 //! The loop over the substeps.
 
-use bevy::tasks::TaskPool;
+use bevy::{math::Vec3A, tasks::TaskPool};
 
 use super::{
     Lattice, Method, Particles, Scratch, StepContext, StepReport, Topology,
@@ -123,6 +123,32 @@ pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, s
     }
     let steady_force = if is_pushed { scratch.steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
     StepReport { substeps, needed_substeps, stiffness_scale, contacts, steady_force }
+}
+
+/// One of several cloths that are stepped together.
+#[derive(Debug)]
+pub struct Member<'a> {
+    /// Its state.
+    pub particles: &'a mut Particles,
+    /// What is connected to what.
+    pub topology: &'a Topology,
+    /// What surrounds it. All members have the same time step.
+    pub ctx: &'a StepContext<'a>,
+    /// Working memory, of each member its own.
+    pub scratch: &'a mut Scratch,
+    /// Its origin from that of the first member, m.
+    pub offset: Vec3A,
+    /// What the step did, afterwards.
+    pub report: Option<StepReport>,
+}
+
+/// Advances cloths that may touch each other, substep by substep, by the time step that they share.
+///
+/// Those whose [`self_collision`](StepContext::self_collision) isn't off meet each other.
+pub fn step_together(members: &mut [Member]) {
+    for member in members {
+        member.report = Some(step(member.particles, member.topology, member.ctx, member.scratch));
+    }
 }
 
 /// What is found when a cloth is taken over.

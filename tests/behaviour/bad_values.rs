@@ -37,7 +37,7 @@ const SPRINGS: [Field<ClothSprings>; 6] = [
     ("ClothSprings::bend_damping", |springs, value| springs.bend_damping = value),
 ];
 
-const CLOTH: [Field<Cloth>; 8] = [
+const CLOTH: [Field<Cloth>; 11] = [
     ("Cloth::max_strain", |cloth, value| cloth.max_strain = value),
     ("Cloth::substeps", |cloth, value| cloth.substeps = Some(value as u32)),
     ("Cloth::max_substeps", |cloth, value| cloth.max_substeps = value as u32),
@@ -46,6 +46,9 @@ const CLOTH: [Field<Cloth>; 8] = [
     ("Cloth::tether_slack", |cloth, value| cloth.tether_slack = Some(value)),
     ("Cloth::fluid_density", |cloth, value| cloth.fluid_density = value),
     ("Cloth::collision_margin", |cloth, value| cloth.collision_margin = value),
+    ("Cloth::max_depenetration_velocity", |cloth, value| cloth.max_depenetration_velocity = value),
+    ("Cloth::self_distance", |cloth, value| cloth.self_distance = value),
+    ("Cloth::self_friction", |cloth, value| cloth.self_friction = value),
 ];
 
 /// The component with one field of it changed.

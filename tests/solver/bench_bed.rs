@@ -11,8 +11,8 @@ use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothSprings, Fabric},
     solver::{
-        Anchor, Effort, Elasticity, Grab, Material, Method, Obstacle, Particles, Scratch, StepContext, StepReport,
-        Tethers, Topology, WindSource, step,
+        Anchor, Effort, Elasticity, Grab, Material, Method, Obstacle, Particles, Scratch, SelfCollision, StepContext,
+        StepReport, Tethers, Topology, WindSource, step,
     },
 };
 
@@ -41,6 +41,7 @@ pub struct Bed {
     pub max_substeps: u32,
     pub max_velocity: f32,
     pub margin: f32,
+    pub self_collision: SelfCollision,
     pub gravity: Vec3A,
     pub fluid_density: f32,
     pub pool: Option<Arc<TaskPool>>,
@@ -84,6 +85,7 @@ impl Bed {
             max_substeps: 4096,
             max_velocity: 100.0,
             margin: 0.0,
+            self_collision: SelfCollision::Off,
             gravity: Vec3A::NEG_Y * GRAVITY,
             fluid_density: 1.225,
             pool: None,
@@ -152,6 +154,10 @@ impl Bed {
             tethers: self.tethers.as_ref(),
             tether_slack: self.tether_slack,
             margin: self.margin,
+            max_depenetration_velocity: 1.0,
+            self_collision: self.self_collision,
+            self_distance: 0.004,
+            self_friction: 0.3,
             obstacles: &self.obstacles,
             fluid_density: self.fluid_density,
             winds: &self.winds,

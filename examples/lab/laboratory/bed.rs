@@ -7,7 +7,10 @@ use bevy::{
 use bevy_drape::{
     build,
     prelude::Fabric,
-    solver::{Anchor, Effort, Material, Method, Obstacle, Particles, Scratch, StepContext, Tethers, Topology, step},
+    solver::{
+        Anchor, Effort, Material, Method, Obstacle, Particles, Scratch, SelfCollision, StepContext, Tethers, Topology,
+        step,
+    },
 };
 
 use super::record::{Case, Rest};
@@ -121,6 +124,10 @@ impl Bed {
             tethers: self.tethers.as_ref(),
             tether_slack: 0.005,
             margin: 0.0,
+            max_depenetration_velocity: 1.0,
+            self_collision: SelfCollision::Off,
+            self_distance: 0.004,
+            self_friction: 0.3,
             obstacles: &self.obstacles,
             fluid_density: self.fluid_density,
             winds: &[],
