@@ -118,3 +118,9 @@ pub struct StepReport {
     /// Sum of the external forces and those of the air on all particles, whatever their direction, N.
     pub steady_force: f32,
 }
+
+impl StepReport {
+    /// Of a step that did nothing.
+    pub(super) const NOTHING: Self =
+        Self { substeps: 0, needed_substeps: 0, stiffness_scale: 1.0, contacts: 0, steady_force: 0.0 };
+}

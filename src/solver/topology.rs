@@ -1,10 +1,11 @@
 //! What is connected to what: built once from the rest shape, immutable, shared by all cloths of that shape.
 
 use core::ops::Range;
+use std::sync::OnceLock;
 
 use bevy::math::Vec3;
 
-use super::{Braid, Lattice, Level, order::Order};
+use super::{Braid, Lattice, Level, contact::surface::Surface, order::Order};
 
 /// What a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -170,12 +171,19 @@ pub struct Topology {
     pub braids: Vec<Braid>,
     /// Coarse lattices, the coarsest first.
     pub levels: Vec<Level>,
+    /// Triangles, corners and edges to be found by what touches them.
+    pub(crate) surface: OnceLock<Surface>,
 }
 
 impl Topology {
     /// Number of particles.
     pub fn particle_count(&self) -> usize {
         self.areas.len()
+    }
+
+    /// Triangles, corners and edges to be found by what touches them: sorted when that is asked for first.
+    pub(super) fn surface(&self) -> &Surface {
+        self.surface.get_or_init(|| Surface::new(&self.rest, &self.triangles))
     }
 
     /// Where the particles stand while a step runs.

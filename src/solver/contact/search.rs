@@ -82,13 +82,15 @@ pub struct Found {
     pub approach: f32,
 }
 
+impl Found {
+    /// Whether it is a particle of the first side and a face of the other.
+    pub fn is_of_face(&self) -> bool {
+        self.pair.features == Features::PointFace && self.is_first_of_a
+    }
+}
+
 /// Shows the pairs of features of triangle `s` of `a` and triangle `t` of `b` that may touch.
-pub fn pairs_between(
-    (a, s): (&Side, usize),
-    (b, t): (&Side, usize),
-    reach: &Reach,
-    mut found: impl FnMut(Found),
-) {
+pub fn pairs_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Reach, mut found: impl FnMut(Found)) {
     let (triangle, other) = (a.surface.triangles[s], b.surface.triangles[t]);
     let (mine, theirs) = (&a.surface.owned[s], &b.surface.owned[t]);
     let is_same = reach.rest.is_some();
@@ -123,13 +125,7 @@ pub fn pairs_between(
 
 /// Shows a pair of features if it may touch.
 #[inline]
-fn found_between(
-    features: Features,
-    sides: [&Side; 4],
-    points: [u32; 4],
-    reach: &Reach,
-    found: impl FnOnce(Found),
-) {
+fn found_between(features: Features, sides: [&Side; 4], points: [u32; 4], reach: &Reach, found: impl FnOnce(Found)) {
     let of = |i: usize| points[i] as usize;
     let places: [Vec3A; 4] = core::array::from_fn(|i| sides[i].ways.position[of(i)]);
     let [w0, w1, w2, w3] = core::array::from_fn(|i| sides[i].ways.way[of(i)]);

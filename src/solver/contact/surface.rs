@@ -56,15 +56,14 @@ impl Surface {
             let mine = |is_new: bool| if is_new { 1.0 } else { 0.0 };
             let corners = triangle.map(|i| mine(!core::mem::replace(&mut seen_corners[i as usize], true)));
             let [a, b, c] = *triangle;
-            let edges = [(a, b), (b, c), (c, a)].map(|(p, q)| mine(seen_edges.insert((p.min(q), p.max(q)))));
+            let edges = [(a, b), (b, c), (c, a)].map(|(p, q)| mine(p != q && seen_edges.insert((p.min(q), p.max(q)))));
             Owned { corners, edges }
         };
         let owned = triangles.iter().map(own).collect();
         let mut surface = Self { triangles, owned, leaves, mean_edge: 0.0, longest_edge: 0.0 };
         let lengths = || surface.edges().map(|[a, b]| rest[a as usize].distance(rest[b as usize]));
-        let (sum, longest, count) = lengths().fold((0.0, 0.0_f32, 0), |(sum, longest, count), length| {
-            (sum + length, longest.max(length), count + 1)
-        });
+        let (sum, longest, count) = lengths()
+            .fold((0.0, 0.0_f32, 0), |(sum, longest, count), length| (sum + length, longest.max(length), count + 1));
         (surface.mean_edge, surface.longest_edge) = (sum / count.max(1) as f32, longest);
         surface
     }
@@ -203,7 +202,7 @@ fn facing(normal: Vec3A) -> u32 {
 }
 
 /// Where the triangles of a surface are, and its patches.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Places {
     /// Box around each triangle.
     pub of_triangles: Vec<Bounds>,
@@ -294,12 +293,7 @@ impl Walk {
     }
 
     /// Visits the pairs of leaves below what is left whose boxes meet.
-    fn down(
-        &mut self,
-        (a, at): (&Surface, &Places),
-        (b, bt): (&Surface, &Places),
-        visit: &mut impl FnMut(u32, u32),
-    ) {
+    fn down(&mut self, (a, at): (&Surface, &Places), (b, bt): (&Surface, &Places), visit: &mut impl FnMut(u32, u32)) {
         while let Some((p, q)) = self.left.pop() {
             if !at.of_nodes[p as usize].meets(&bt.of_nodes[q as usize]) {
                 continue;
@@ -308,12 +302,9 @@ impl Walk {
                 (true, true) => visit(p, q),
                 (false, true) => self.left.extend([(2 * p + 1, q), (2 * p, q)]),
                 (true, false) => self.left.extend([(p, 2 * q + 1), (p, 2 * q)]),
-                (false, false) => self.left.extend([
-                    (2 * p + 1, 2 * q + 1),
-                    (2 * p + 1, 2 * q),
-                    (2 * p, 2 * q + 1),
-                    (2 * p, 2 * q),
-                ]),
+                (false, false) => {
+                    self.left.extend([(2 * p + 1, 2 * q + 1), (2 * p + 1, 2 * q), (2 * p, 2 * q + 1), (2 * p, 2 * q)])
+                }
             }
         }
     }
