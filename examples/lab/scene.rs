@@ -77,6 +77,8 @@ impl Scene {
                 SelfContact::Particles => SelfCollision::Particles,
                 SelfContact::Robust => SelfCollision::Robust,
             },
+            collision_layers: 1,
+            collision_mask: 1,
             self_distance: 0.004,
             self_friction: 0.3,
             obstacles: &self.obstacles,

@@ -109,7 +109,9 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut Touch) {
             cloth.advance(i, span.clone());
         }
         if may_touch && let Some(Substep { h, ctx, .. }) = cloths.first().map(|cloth| cloth.substep) {
-            touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
+            let touched = touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
+            // Whose they are isn't known: they count once.
+            cloths[0].touched = touched;
         }
         for cloth in &mut *cloths {
             cloth.finish(span.clone());
@@ -178,6 +180,8 @@ pub(super) struct Running<'a> {
     /// Whether threads that share the work have finished the substep.
     is_finished: bool,
     contacts: u32,
+    /// Pairs of features that touched in the latest substep.
+    touched: u32,
 }
 
 impl<'a> Running<'a> {
@@ -226,6 +230,7 @@ impl<'a> Running<'a> {
             has_moved,
             is_finished: false,
             contacts: 0,
+            touched: 0,
         }
     }
 
@@ -284,7 +289,8 @@ impl<'a> Running<'a> {
 
     /// Hands the state back.
     fn end(self) -> StepReport {
-        let Self { particles, scratch, substep, substeps, needed_substeps, contacts, .. } = self;
+        let Self { particles, scratch, substep, substeps, needed_substeps, contacts, touched, .. } = self;
+        let contacts = contacts + touched;
         let Scratch { lanes, steady_force, instructions, .. } = scratch;
         match substep.helpers {
             Some((pool, _)) => share::store(pool, lanes, particles, *instructions),

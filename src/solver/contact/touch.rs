@@ -20,15 +20,28 @@ use super::{
 use crate::solver::{Lanes, SelfCollision, StepContext, step::Running};
 
 /// How far particles may come off their way before there is another search: this share of the mean edge.
-const SLACK: f32 = 0.25;
+const SLACK: f32 = 0.2;
 
 /// How deep the inside of a triangle may sink into what isn't sharp, m, where the margin isn't more.
 const SINK: f32 = 0.0005;
 
+/// Whether two cloths meet, or one itself.
+fn meet(one: &StepContext, other: &StepContext) -> bool {
+    let is_on = one.self_collision != SelfCollision::Off && other.self_collision != SelfCollision::Off;
+    let is_same = core::ptr::eq(one, other);
+    let is_in = one.collision_layers & other.collision_mask != 0 && other.collision_layers & one.collision_mask != 0;
+    is_on && (is_same || is_in)
+}
+
 /// What of a cloth matters here.
 impl Running<'_> {
     fn collides(&self) -> bool {
-        self.ctx.self_collision == SelfCollision::Robust
+        self.ctx.self_collision != SelfCollision::Off
+    }
+
+    /// Distance that the cloth keeps from cloth, m.
+    fn self_distance(&self, mode: SelfCollision) -> f32 {
+        self.topology.self_distance(mode, self.ctx.self_distance)
     }
 
     /// How deep triangles may sink into obstacles, m.
@@ -173,7 +186,9 @@ impl Touch {
         for (i, cloth) in cloths.iter().enumerate() {
             let particles = self.first[i] as usize..self.first[i + 1] as usize;
             let (start, way) = (&self.start[particles.clone()], &self.way[particles]);
-            let margin = 0.5 * cloth.ctx.self_distance + SLACK * cloth.surface().mean_edge;
+            // With a ball against a robust cloth, the larger distance counts.
+            let distance = cloth.self_distance(cloth.ctx.self_collision);
+            let margin = 0.5 * distance + SLACK * cloth.surface().mean_edge;
             let ways = Ways { position: start, way };
             let corners = |triangle: [u32; 3]| triangle.map(|i| start[i as usize]);
             let bounds = |triangle| ways.bounds(triangle).grown(margin);
@@ -181,7 +196,7 @@ impl Touch {
         }
         for i in 0..cloths.len() {
             for j in i..cloths.len() {
-                if !cloths[i].collides() || !cloths[j].collides() {
+                if !meet(cloths[i].ctx, cloths[j].ctx) {
                     continue;
                 }
                 if i != j && !self.places[i].whole().meets(&self.places[j].whole()) {
@@ -212,11 +227,12 @@ impl Touch {
             true => walk.within(a.surface, a.places, |p, q| leaves.push((p, q))),
             false => walk.between((a.surface, a.places), (b.surface, b.places), |p, q| leaves.push((p, q))),
         }
-        let mean = |of: fn(&StepContext) -> f32| 0.5 * (of(cloths[i].ctx) + of(cloths[j].ctx));
+        // The more careful of the two ways.
+        let mode = cloths[i].ctx.self_collision.max(cloths[j].ctx.self_collision);
         let reach = Reach {
-            distance: mean(|ctx| ctx.self_distance),
+            distance: 0.5 * (cloths[i].self_distance(mode) + cloths[j].self_distance(mode)),
             slack: SLACK * (a.surface.mean_edge + b.surface.mean_edge),
-            friction: mean(|ctx| ctx.self_friction),
+            friction: 0.5 * (cloths[i].ctx.self_friction + cloths[j].ctx.self_friction),
             rest: (i == j).then_some(&*cloths[i].topology.rest),
         };
         for &(p, q) in &*leaves {
@@ -224,6 +240,10 @@ impl Touch {
                 for t in b.surface.of_leaf(q) {
                     // Of a leaf with itself, each two triangles once.
                     if i == j && p == q && s >= t || !a.places.of_triangles[s].meets(&b.places.of_triangles[t]) {
+                        continue;
+                    }
+                    if mode == SelfCollision::Particles {
+                        search::balls_between((&a, s), (&b, t), &reach, |found| pairs.push(found.pair));
                         continue;
                     }
                     let (one, other) = (a.surface.triangles[s], b.surface.triangles[t]);
@@ -400,6 +420,7 @@ impl Touch {
                 (Features::PointFace, true) => 1..4,
                 (Features::PointFace, false) => 0..1,
                 (Features::EdgeEdge, _) => 2..4,
+                (Features::PointPoint, _) => 1..4,
             };
             for k in of_obstacle {
                 let number = &mut numbers[pair.points[k] as usize];
