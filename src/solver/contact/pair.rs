@@ -49,6 +49,8 @@ pub struct Pair {
     pub taper: f32,
     /// Coulomb friction, no unit.
     pub friction: f32,
+    /// The face is of a closed mesh: right behind it is inside.
+    pub is_of_solid: bool,
     /// Distance when it was last looked at, m; negative after having passed through.
     pub gap: f32,
     /// Unit vector from the second feature to the first, on the side where it belongs.
@@ -116,7 +118,11 @@ impl Pair {
         let Nearest { weights, between } = self.features.nearest(places);
         let (direction, length) = between.normalize_and_length();
         let (mut normal, mut gap) = if length > 0.0 { (direction, length) } else { (self.normal, 0.0) };
-        if normal.dot(self.normal) < 0.0 && (self.gap < 0.0 || self.has_passed(before, places)) {
+        let is_behind = match self.is_of_solid && weights[1..].iter().all(|&weight| weight < 0.0) {
+            true => normal.dot((places[2] - places[1]).cross(places[3] - places[1])) < 0.0,
+            false => normal.dot(self.normal) < 0.0 && (self.gap < 0.0 || self.has_passed(before, places)),
+        };
+        if is_behind {
             (normal, gap) = (-normal, -gap);
         }
         // Of an edge's places, the far end is at weight 1.

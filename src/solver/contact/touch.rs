@@ -21,8 +21,13 @@ mod obstacle;
 
 use obstacle::{Approach, AtObstacle, Fixed};
 
-/// How far particles may come off their way before there is another search: this share of the mean edge.
+/// How far particles may come off their way before there is another search: this share of the mean edge at most.
 const SLACK: f32 = 0.2;
+
+/// The same where cloth is at rest, m, and as a share of the way by which parts of it move past each other: the less, the
+/// fewer layers of a pile are near each other, and the sooner there is another search.
+const SLACK_AT_REST: f32 = 0.0005;
+const SLACK_OF_WAY: f32 = 0.25;
 
 /// How deep the inside of a triangle may sink into what isn't sharp, m, where the margin isn't more.
 const SINK: f32 = 0.0005;
@@ -71,9 +76,9 @@ pub struct Touch {
     /// Where particles were at the search, m, and how far they will come until the step's end.
     start: Vec<Vec3A>,
     way: Vec<Vec3A>,
-    /// Share of the step that was over at the search.
-    since: f32,
-    /// By how much each particle may come off its way, m.
+    /// The part of the step that the search was for.
+    searched: Range<f32>,
+    /// By how much the particles of each cloth may come off their ways, m.
     slack: Vec<f32>,
     places: Vec<Places>,
     pairs: Vec<Pair>,
@@ -95,12 +100,14 @@ impl Touch {
     }
 
     /// Looks for pairs in what is left of a step of `dt` seconds, of which the share `now` is over, if it is time to.
-    pub fn search(&mut self, cloths: &mut [Running], now: f32, dt: f32) {
-        if !core::mem::take(&mut self.is_off) {
+    fn search(&mut self, cloths: &mut [Running], span: Range<f32>, dt: f32) {
+        if !self.is_off && span.end <= self.searched.end {
             return;
         }
-        self.since = now;
-        self.take_ways(cloths, (1.0 - now) * dt, now);
+        self.take_velocities(cloths);
+        let now = span.start;
+        self.searched = now..self.horizon(cloths, span, dt);
+        self.take_ways(cloths, dt);
         self.pairs.clear();
         self.tangles.clear();
         self.fixed.clear();
@@ -113,7 +120,8 @@ impl Touch {
             let particles = self.first[number] as usize..self.first[number + 1] as usize;
             let ways = Ways { position: &self.start[particles.clone()], way: &self.way[particles] };
             let (first, total) = (self.first[number], self.start.len());
-            let at = Approach { cloth, number, first, total, ways, now };
+            let (slack, span) = (self.slack[number], self.searched.clone());
+            let at = Approach { cloth, number, first, total, ways, slack, span };
             for i in 0..cloth.ctx.obstacles.len() {
                 self.at_obstacle.search(&at, i, &mut self.walk, &mut self.fixed, &mut self.pairs);
             }
@@ -125,12 +133,11 @@ impl Touch {
         self.points.inverse_mass.resize(count, 0.0);
     }
 
-    /// Reads where all particles are and where they go within `left` seconds.
-    fn take_ways(&mut self, cloths: &mut [Running], left: f32, now: f32) {
+    /// Reads where all particles are when the substep begins, and their velocities, as ways.
+    fn take_velocities(&mut self, cloths: &[Running]) {
         self.first.clear();
         self.start.clear();
         self.way.clear();
-        self.slack.clear();
         self.points.inverse_mass.clear();
         for cloth in cloths {
             let first = self.start.len();
@@ -141,22 +148,49 @@ impl Touch {
             let Lanes { order, previous, velocity, .. } = &cloth.scratch.lanes;
             previous.store(*order, &mut self.start[first..], cloth.scratch.instructions);
             velocity.store(*order, &mut self.way[first..], cloth.scratch.instructions);
-            let fall = cloth.ctx.gravity * (0.5 * left * left);
-            for (start, way) in self.start[first..].iter_mut().zip(&mut self.way[first..]) {
-                *start += cloth.offset;
-                *way = *way * left + fall;
-            }
-            for particle in 0..count {
-                self.points.inverse_mass.push(cloth.scratch.lanes.inverse_mass(order.slot(particle as u32)));
-            }
-            for anchor in cloth.ctx.anchors {
-                self.way[first + anchor.particle as usize] = (anchor.end - anchor.start) * (1.0 - now);
-            }
-            let surface = cloth.surface();
-            let slack = SLACK * surface.mean_edge;
-            self.slack.resize(first + count, slack);
+            self.start[first..].iter_mut().for_each(|place| *place += cloth.offset);
+            let masses = (0..count as u32).map(|particle| cloth.scratch.lanes.inverse_mass(order.slot(particle)));
+            self.points.inverse_mass.extend(masses);
         }
         self.first.push(self.start.len() as u32);
+    }
+
+    /// The moment of the step (0..=1) up to which a search is worth while: the farther things move past each other, the
+    /// more is near their ways, and within the length of an edge that is little.
+    ///
+    /// Sets by how much particles may come off their ways until then, too.
+    fn horizon(&mut self, cloths: &[Running], span: Range<f32>, dt: f32) -> f32 {
+        let mean = self.way.iter().sum::<Vec3A>() / self.way.len().max(1) as f32;
+        let mut fastest = self.way.iter().map(|velocity| velocity.distance_squared(mean)).fold(0.0, f32::max).sqrt();
+        let mut edge = f32::INFINITY;
+        for cloth in cloths {
+            edge = edge.min(cloth.surface().mean_edge);
+            for obstacle in cloth.ctx.obstacles {
+                let speed = (obstacle.end.translation - obstacle.start.translation) / dt;
+                fastest = fastest.max(speed.distance(mean));
+            }
+        }
+        let share = edge / (fastest * dt).max(f32::MIN_POSITIVE);
+        let end = (span.start + share).clamp(span.end, 1.0);
+        let needed = SLACK_AT_REST + SLACK_OF_WAY * fastest * (end - span.start) * dt;
+        self.slack.clear();
+        self.slack.extend(cloths.iter().map(|cloth| needed.min(SLACK * cloth.surface().mean_edge)));
+        end
+    }
+
+    /// Works out how far all particles will come within the time that the search is for.
+    fn take_ways(&mut self, cloths: &[Running], dt: f32) {
+        let share = self.searched.end - self.searched.start;
+        let left = share * dt;
+        for (number, cloth) in cloths.iter().enumerate() {
+            let particles = self.first[number] as usize..self.first[number + 1] as usize;
+            let fall = cloth.ctx.gravity * (0.5 * left * left);
+            let way = &mut self.way[particles];
+            way.iter_mut().for_each(|way| *way = *way * left + fall);
+            for anchor in cloth.ctx.anchors {
+                way[anchor.particle as usize] = (anchor.end - anchor.start) * share;
+            }
+        }
     }
 
     /// Looks for pairs between cloths, and between parts of one.
@@ -167,7 +201,7 @@ impl Touch {
             let (start, way) = (&self.start[particles.clone()], &self.way[particles]);
             // With a ball against a robust cloth, the larger distance counts.
             let distance = cloth.self_distance(cloth.ctx.self_collision);
-            let margin = 0.5 * distance + SLACK * cloth.surface().mean_edge;
+            let margin = 0.5 * distance + self.slack[i];
             let ways = Ways { position: start, way };
             let corners = |triangle: [u32; 3]| triangle.map(|i| start[i as usize]);
             let bounds = |triangle| ways.bounds(triangle).grown(margin);
@@ -187,7 +221,7 @@ impl Touch {
     }
 
     fn search_between(&mut self, cloths: &[Running], i: usize, j: usize) {
-        let Self { first, start, way, places, walk, leaves, pairs, is_tangled, tangles, .. } = self;
+        let Self { first, start, way, places, walk, leaves, pairs, is_tangled, tangles, slack, .. } = self;
         let side = |i: usize| {
             let particles = first[i] as usize..first[i + 1] as usize;
             Side {
@@ -210,7 +244,7 @@ impl Touch {
         let mode = cloths[i].ctx.self_collision.max(cloths[j].ctx.self_collision);
         let reach = Reach {
             distance: 0.5 * (cloths[i].self_distance(mode) + cloths[j].self_distance(mode)),
-            slack: SLACK * (a.surface.mean_edge + b.surface.mean_edge),
+            slack: slack[i] + slack[j],
             friction: 0.5 * (cloths[i].ctx.self_friction + cloths[j].ctx.self_friction),
             rest: (i == j).then_some(&*cloths[i].topology.rest),
         };
@@ -249,7 +283,7 @@ impl Touch {
     /// Keeps features apart within the part `span` (0..=1) of the step, a substep of `h` seconds. Returns the number of
     /// pairs that touched.
     pub fn solve(&mut self, cloths: &mut [Running], span: Range<f32>, h: f32, dt: f32) -> u32 {
-        self.search(cloths, span.start, dt);
+        self.search(cloths, span.clone(), dt);
         let count = self.start.len();
         self.points.position.resize(count + self.fixed.len(), Vec3A::ZERO);
         self.points.previous.resize(count + self.fixed.len(), Vec3A::ZERO);
@@ -292,11 +326,14 @@ impl Touch {
 
     /// Whether a particle has come off its way.
     fn has_come_off(&self, now: f32) -> bool {
-        let left = 1.0 - self.since;
-        let share = if left > 0.0 { (now - self.since) / left } else { 1.0 };
-        let ways = self.start.iter().zip(&self.way).zip(&self.slack);
-        ways.zip(&self.points.position)
-            .any(|(((&start, &way), &slack), place)| place.distance_squared(start + way * share) > slack * slack)
+        let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
+        (0..self.slack.len()).any(|cloth| {
+            let particles = self.first[cloth] as usize..self.first[cloth + 1] as usize;
+            let far = self.slack[cloth] * self.slack[cloth];
+            let ways = self.start[particles.clone()].iter().zip(&self.way[particles.clone()]);
+            let mut ways = ways.zip(&self.points.position[particles]);
+            ways.any(|((&start, &way), place)| place.distance_squared(start + way * share) > far)
+        })
     }
 
     /// Brings the points of obstacles to where they are in the part `span` of the step.

@@ -1,8 +1,9 @@
 //! The search for pairs of a cloth and one obstacle.
 
+use core::ops::Range;
+
 use bevy::math::Vec3A;
 
-use super::SLACK;
 use crate::solver::{
     contact::{
         Obstacle, Shape,
@@ -17,6 +18,9 @@ use crate::solver::{
     step::Running,
 };
 
+/// Distance that features keep from obstacles at least, m. Nearer, rounding decides which side they are on.
+const LEAST: f32 = 0.0002;
+
 /// A cloth on its way.
 pub struct Approach<'a> {
     pub cloth: &'a Running<'a>,
@@ -26,8 +30,10 @@ pub struct Approach<'a> {
     pub first: u32,
     pub total: usize,
     pub ways: Ways<'a>,
-    /// Share of the step that is over.
-    pub now: f32,
+    /// By how much particles may come off their ways, m.
+    pub slack: f32,
+    /// The part of the step that the search is for.
+    pub span: Range<f32>,
 }
 
 /// A point of an obstacle.
@@ -68,12 +74,12 @@ struct Deformed {
 }
 
 impl Deformed {
-    /// Follows a mesh of which the share `now` of the way is over.
-    fn follow(&mut self, surface: &Surface, from: &[Vec3A], to: &[Vec3A], now: f32, is_closed: bool) {
+    /// Follows a mesh in the part `span` of a step.
+    fn follow(&mut self, surface: &Surface, from: &[Vec3A], to: &[Vec3A], span: &Range<f32>, is_closed: bool) {
         self.points.clear();
-        self.points.extend(from.iter().zip(to).map(|(&p, &q)| p.lerp(q, now)));
+        self.points.extend(from.iter().zip(to).map(|(&p, &q)| p.lerp(q, span.start)));
         self.way.clear();
-        self.way.extend(to.iter().zip(&self.points).map(|(&q, &p)| q - p));
+        self.way.extend(from.iter().zip(to).map(|(&p, &q)| (q - p) * (span.end - span.start)));
         let ways = Ways { position: &self.points, way: &self.way };
         self.places.follow(surface, |triangle| ways.bounds(triangle), None::<fn(_) -> _>);
         if is_closed {
@@ -106,14 +112,14 @@ impl AtObstacle {
     pub fn search(&mut self, at: &Approach, i: usize, walk: &mut Walk, fixed: &mut Vec<Fixed>, pairs: &mut Vec<Pair>) {
         let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
         let surface = cloth.surface();
-        let distance = cloth.ctx.contact_distance();
+        let distance = cloth.ctx.contact_distance().max(LEAST);
         if let Shape::Solid(solid) = &obstacle.shape {
             draw(&mut self.outlines, at.number, i, solid, [surface.longest_edge, distance, cloth.sink()]);
         }
         let Self { position, way, places, leaves, found, nearest, whereabouts, number, deformed, outlines } = self;
-        let Some(target) = target(obstacle, at.now, deformed, || &outlines[at.number][i].2) else { return };
+        let Some(target) = target(obstacle, &at.span, deformed, || &outlines[at.number][i].2) else { return };
         // In the obstacle's own frame it stays, and the cloth's way is that past it.
-        let reached = distance + SLACK * surface.mean_edge;
+        let reached = distance + at.slack;
         let bounds = to_frame(at, obstacle, position, way).grown(reached);
         if !bounds.meets(&target.places.whole()) {
             return;
@@ -134,7 +140,7 @@ impl AtObstacle {
             radii: target.radii,
         };
         let friction = cloth.ctx.material.friction * obstacle.friction;
-        let reach = Reach { distance, slack: SLACK * surface.mean_edge, friction, rest: None };
+        let reach = Reach { distance, slack: at.slack, friction, rest: None };
         find(&a, &b, &reach, leaves, found, nearest);
         whereabouts.clear();
         if let Some(normals) = target.normals {
@@ -156,7 +162,7 @@ impl AtObstacle {
         let is_inside = |particle: u32| whereabouts.get(particle as usize) == Some(&Whereabouts::Inside);
         number.clear();
         number.resize(target.points.len(), u32::MAX);
-        let to_world = obstacle.pose(at.now).rotation;
+        let to_world = obstacle.pose(at.span.start).rotation;
         let mut add = |mut pair: Pair, of_obstacle: core::ops::Range<usize>| {
             for k in of_obstacle {
                 let point = pair.points[k];
@@ -188,7 +194,11 @@ impl AtObstacle {
                 }
                 if has_inside {
                     (pair.normal, pair.gap) = (-pair.normal, -pair.gap);
+                } else if target.normals.is_some() && is_behind(one, &target) {
+                    // The far side of something thin.
+                    continue;
                 }
+                pair.is_of_solid = target.normals.is_some();
             } else if has_inside {
                 // It is on its way out.
                 continue;
@@ -209,7 +219,10 @@ impl AtObstacle {
             let (normal, depth) = out.normalize_and_length();
             let features = Features::PointFace;
             let points = [at.first + particle, a, b, c];
-            add(Pair { features, points, distance, taper: 0.0, friction, gap: -depth, normal }, 1..4);
+            add(
+                Pair { features, points, distance, taper: 0.0, friction, is_of_solid: true, gap: -depth, normal },
+                1..4,
+            );
         }
     }
 }
@@ -229,10 +242,10 @@ fn draw(outlines: &mut Vec<Vec<(Solid, [f32; 3], Outline)>>, cloth: usize, i: us
     }
 }
 
-/// An obstacle where it is when the share `now` of the step is over. None where nothing of it is sharp.
+/// An obstacle where it is when the part `span` of the step begins. None where nothing of it is sharp.
 fn target<'a>(
     obstacle: &'a Obstacle,
-    now: f32,
+    span: &Range<f32>,
     deformed: &'a mut Deformed,
     outline: impl FnOnce() -> &'a Outline,
 ) -> Option<Target<'a>> {
@@ -248,7 +261,7 @@ fn target<'a>(
             Some(Target { points, surface, places, radii: &[], has_faces: true, normals, way: None })
         }
         Shape::Mesh(MeshShape { mesh, deformed: Some([from, to]) }) => {
-            deformed.follow(&mesh.surface, from, to, now, mesh.is_closed);
+            deformed.follow(&mesh.surface, from, to, span, mesh.is_closed);
             let Deformed { points, way, places, normals } = deformed;
             let normals = mesh.is_closed.then_some(&*normals);
             let surface = &mesh.surface;
@@ -259,7 +272,7 @@ fn target<'a>(
 
 /// Takes the cloth's ways into the obstacle's frame, and returns the box around them.
 fn to_frame(at: &Approach, obstacle: &Obstacle, position: &mut Vec<Vec3A>, way: &mut Vec<Vec3A>) -> Bounds {
-    let (now, end) = (obstacle.pose(at.now).inverse(), obstacle.end.inverse());
+    let (now, end) = (obstacle.pose(at.span.start).inverse(), obstacle.pose(at.span.end).inverse());
     position.clear();
     way.clear();
     let mut bounds = Bounds::NOTHING;
@@ -294,6 +307,12 @@ fn find(a: &Side, b: &Side, reach: &Reach, leaves: &[(u32, u32)], found: &mut Ve
             }
         }
     }
+}
+
+/// Whether a particle is behind the plane of a face.
+fn is_behind(found: &Found, target: &Target) -> bool {
+    let [a, b, c] = target.surface.triangles[found.face].map(|i| target.points[i as usize]);
+    found.nearest.between.dot((b - a).cross(c - a)) < 0.0
 }
 
 /// On which side of its nearest face a particle is, by the normal of the closest place.
