@@ -163,11 +163,6 @@ impl Lanes {
     pub fn inverse_mass(&self, slot: usize) -> f32 {
         self.inverse_mass[slot / LANES][slot % LANES]
     }
-
-    /// Number of slots.
-    pub fn slot_count(&self) -> usize {
-        self.inverse_mass.len() * LANES
-    }
 }
 
 /// Some blocks of a cloth, one after the other.

@@ -200,6 +200,7 @@ impl<'a> Running<'a> {
         let helpers = helpers(topology, ctx);
         let Loaded { is_pushed, has_moved } = load(particles, topology, ctx, h, helpers, scratch);
         grab::take_up(&mut scratch.lanes, ctx.grabs);
+        scratch.near.begin();
         let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
         let substep = Substep {
             topology,
@@ -278,7 +279,7 @@ impl<'a> Running<'a> {
         let Self { scratch, substep, .. } = self;
         let ctx = substep.ctx;
         if substep.is_near {
-            self.contacts = contact::project(&mut scratch.lanes, ctx, span);
+            self.contacts = contact::project(scratch, ctx, span, substep.h);
         }
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
         let is_constrained = ctx.method != Method::Explicit || substep.touches || !ctx.grabs.is_empty();

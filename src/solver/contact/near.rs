@@ -1,0 +1,254 @@
+//! Which solids a cloth may touch, and with which of its particles.
+//!
+//! Particles stand in stretches of some blocks, patches of a lattice. Of each stretch it is known how far it was from each
+//! solid at some moment; until it has come that far since, none of its particles can touch it.
+
+use core::ops::Range;
+
+use bevy::math::{Isometry3d, Vec3A};
+use fearless_simd::{dispatch, f32x8, prelude::*};
+
+use super::{MeshShape, Obstacle, Shape, project::Stretches, sweep};
+use crate::solver::{
+    Lanes, Particles, StepContext,
+    lanes::{Block, Run},
+    simd::{Instructions, Vec3x8, lane},
+};
+
+/// Blocks in a stretch.
+pub(super) const STRETCH: usize = 8;
+
+/// The way that a cloth may gain on an obstacle within a step by what pulls and pushes at it, m.
+const GAINED: f32 = 0.01;
+
+/// What is known of the solids around a cloth.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Near {
+    /// Those that may be touched.
+    pub(super) solids: Vec<NearSolid>,
+    /// Stretches that may touch them, solid after solid.
+    reachable: Vec<Reachable>,
+    /// Where the particles were when that was found, m.
+    start: Vec<Block>,
+    /// Ball around the free ones of each stretch there.
+    balls: Vec<Ball>,
+    /// How far the free ones of each stretch are from there, m.
+    moved: Vec<f32>,
+    /// How far they may come without touching anything else, m.
+    known: f32,
+}
+
+/// A solid that may be touched.
+#[derive(Clone, Debug)]
+pub(super) struct NearSolid {
+    /// Its number among the obstacles.
+    pub obstacle: usize,
+    /// Where it was when the particles were at their start.
+    pose: Isometry3d,
+    /// The farthest from its origin that anything happens, m.
+    far: f32,
+    /// Its stretches.
+    reachable: Range<usize>,
+}
+
+/// A stretch that may touch a solid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reachable {
+    pub stretch: usize,
+    /// Distance between the two at least, m, that they came nearer than which they would touch.
+    pub clearance: f32,
+}
+
+/// A ball around points.
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    centre: Vec3A,
+    /// Radius, m; negative around nothing.
+    radius: f32,
+}
+
+impl Ball {
+    /// Around the box between two corners.
+    fn around(low: Vec3A, high: Vec3A) -> Self {
+        if low.cmple(high).all() {
+            Self { centre: (low + high) / 2.0, radius: low.distance(high) / 2.0 }
+        } else {
+            Self { centre: Vec3A::ZERO, radius: f32::NEG_INFINITY }
+        }
+    }
+}
+
+/// Whether an obstacle is so near that the cloth may touch it within a step of `dt` seconds.
+pub(in crate::solver) fn is_any_near(particles: &Particles, ctx: &StepContext, dt: f32) -> bool {
+    if ctx.obstacles.is_empty() {
+        return false;
+    }
+    let ends = ctx.anchors.iter().map(|anchor| anchor.end).chain(ctx.grabs.iter().map(|grab| grab.end));
+    let places = particles.position.iter().copied().chain(ends);
+    let (low, high) = places.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let fastest = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
+    let cloth = Ball::around(low, high);
+    // A step ahead, and once more for what it gains in speed.
+    let reach = ctx.contact_distance() + 2.0 * fastest * dt + GAINED;
+    ctx.obstacles.iter().any(|obstacle| {
+        let way = obstacle.start.translation.distance(obstacle.end.translation);
+        let Some((place, radius)) = obstacle.ball() else {
+            let Shape::Solid(solid) = obstacle.shape else { return true };
+            let is_reached = |pose: &Isometry3d| {
+                solid.surface(pose.inverse().transform_point(cloth.centre)).distance - cloth.radius <= reach + way
+            };
+            // What turns sweeps over more than it covers at both ends.
+            return obstacle.start.rotation != obstacle.end.rotation
+                || is_reached(&obstacle.start)
+                || is_reached(&obstacle.end);
+        };
+        place.distance(place.clamp(low, high)) - radius <= reach + way
+    })
+}
+
+impl Obstacle {
+    /// Centre and radius of a ball around it at the start of the step, m, that holds it as well however it turns. None where
+    /// there is none, or nobody knows.
+    fn ball(&self) -> Option<(Vec3A, f32)> {
+        let radius = match &self.shape {
+            Shape::Solid(solid) => solid.reach(),
+            Shape::Mesh(MeshShape { mesh, deformed: None }) => {
+                let [low, high] = mesh.bounds();
+                low.abs().max(high.abs()).length()
+            }
+            Shape::Mesh(_) => return None,
+        };
+        radius.is_finite().then_some((self.start.translation, radius))
+    }
+}
+
+impl Near {
+    /// Begins a step: nothing is known yet.
+    pub fn begin(&mut self) {
+        self.known = f32::NEG_INFINITY;
+    }
+
+    /// Follows the particles in the part `span` of the step, and finds out anew what is near where one has come too far.
+    pub fn follow(&mut self, lanes: &mut Lanes, ctx: &StepContext, span: Range<f32>, instructions: Instructions) {
+        let stretches = lanes.inverse_mass.len().div_ceil(STRETCH);
+        self.moved.resize(stretches, 0.0);
+        let run = lanes.whole();
+        if self.known >= 0.0 {
+            self.measure(&run, instructions);
+            let way = self.farthest();
+            if way <= self.known {
+                return;
+            }
+        }
+        self.start.clear();
+        self.start.extend_from_slice(run.previous);
+        self.measure(&run, instructions);
+        self.find(&run, ctx, span, instructions);
+    }
+
+    /// How far any particle has come, m.
+    fn farthest(&self) -> f32 {
+        self.moved.iter().copied().fold(0.0, f32::max)
+    }
+
+    fn measure(&mut self, run: &Run, instructions: Instructions) {
+        let Self { moved, start, .. } = self;
+        dispatch!(instructions.level(), simd => measure(simd, moved, start, run));
+    }
+
+    /// Finds the solids and stretches that may touch each other in what is left of the step, from `span` on.
+    fn find(&mut self, run: &Run, ctx: &StepContext, span: Range<f32>, instructions: Instructions) {
+        let Self { solids, reachable, start, balls, moved, .. } = self;
+        balls.resize(moved.len(), Ball { centre: Vec3A::ZERO, radius: 0.0 });
+        dispatch!(instructions.level(), simd => enclose(simd, balls, start, run));
+        let some = balls.iter().filter(|ball| ball.radius >= 0.0);
+        let (low, high) = some.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), ball| {
+            (low.min(ball.centre - ball.radius), high.max(ball.centre + ball.radius))
+        });
+        let cloth = Ball::around(low, high);
+        let left = (1.0 - span.start) / (span.end - span.start);
+        let mut known = 2.0 * self.moved.iter().copied().fold(0.0, f32::max) * left + GAINED;
+        let ways = ctx.obstacles.iter().map(|o| o.start.translation.distance(o.end.translation));
+        known += ways.fold(0.0, f32::max);
+        self.known = known;
+        solids.clear();
+        reachable.clear();
+        let distance = ctx.contact_distance();
+        for (obstacle, it) in ctx.obstacles.iter().enumerate() {
+            let Shape::Solid(solid) = it.shape else { continue };
+            let pose = it.pose(span.start);
+            let radius = solid.reach();
+            let shift = pose.translation.distance(it.end.translation);
+            let far = pose.translation.distance(cloth.centre) + cloth.radius + known;
+            // A ball around it holds it however it turns.
+            let gap = |ball: &Ball| pose.translation.distance(ball.centre) - ball.radius - radius - distance;
+            if gap(&cloth) - shift > known {
+                continue;
+            }
+            let way = sweep::way_between(&pose, &it.end, far);
+            let to_local = pose.inverse();
+            let first = reachable.len();
+            for (stretch, ball) in balls.iter().enumerate() {
+                if ball.radius < 0.0 || gap(ball) - shift > known {
+                    continue;
+                }
+                let clearance = solid.surface(to_local.transform_point(ball.centre)).distance - ball.radius - distance;
+                if clearance - way <= known {
+                    reachable.push(Reachable { stretch, clearance });
+                }
+            }
+            if reachable.len() > first {
+                solids.push(NearSolid { obstacle, pose, far, reachable: first..reachable.len() });
+            }
+        }
+    }
+
+    /// The stretches that a solid may touch on its way.
+    pub(super) fn stretches(&mut self, number: usize, poses: [Isometry3d; 2]) -> Stretches<'_> {
+        let NearSolid { far, reachable, pose, .. } = &self.solids[number];
+        let [before, after] = poses.map(|to| sweep::way_between(pose, &to, *far));
+        Stretches {
+            reachable: &self.reachable[reachable.clone()],
+            moved: &mut self.moved,
+            start: &self.start,
+            way: before.max(after),
+            far: *far,
+        }
+    }
+}
+
+#[inline(always)]
+fn measure<S: Simd>(simd: S, moved: &mut [f32], start: &[Block], run: &Run) {
+    let zero = f32x8::splat(simd, 0.0);
+    let blocks = run.position.chunks(STRETCH).zip(start.chunks(STRETCH)).zip(run.inverse_mass.chunks(STRETCH));
+    for (moved, ((position, start), inverse_mass)) in moved.iter_mut().zip(blocks) {
+        let mut farthest = zero;
+        for ((position, start), w) in position.iter().zip(start).zip(inverse_mass) {
+            let off = Vec3x8::load(simd, position) - Vec3x8::load(simd, start);
+            let is_free = lane(simd, w).simd_gt(zero);
+            farthest = farthest.max(is_free.select(off.dot(off), zero));
+        }
+        *moved = farthest.reduce_max().sqrt();
+    }
+}
+
+#[inline(always)]
+fn enclose<S: Simd>(simd: S, balls: &mut [Ball], start: &[Block], run: &Run) {
+    let zero = f32x8::splat(simd, 0.0);
+    let (least, most) = (Vec3x8::splat(simd, [f32::INFINITY; 3]), Vec3x8::splat(simd, [f32::NEG_INFINITY; 3]));
+    for (ball, (start, inverse_mass)) in
+        balls.iter_mut().zip(start.chunks(STRETCH).zip(run.inverse_mass.chunks(STRETCH)))
+    {
+        let (mut low, mut high) = (least, most);
+        for (start, w) in start.iter().zip(inverse_mass) {
+            let place = Vec3x8::load(simd, start);
+            let is_free = lane(simd, w).simd_gt(zero);
+            let (inner, outer) = (place.or(is_free, least), place.or(is_free, most));
+            low = Vec3x8 { x: low.x.min(inner.x), y: low.y.min(inner.y), z: low.z.min(inner.z) };
+            high = Vec3x8 { x: high.x.max(outer.x), y: high.y.max(outer.y), z: high.z.max(outer.z) };
+        }
+        let low = Vec3A::new(low.x.reduce_min(), low.y.reduce_min(), low.z.reduce_min());
+        let high = Vec3A::new(high.x.reduce_max(), high.y.reduce_max(), high.z.reduce_max());
+        *ball = Ball::around(low, high);
+    }
+}

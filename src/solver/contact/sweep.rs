@@ -1,0 +1,133 @@
+//! The way of a particle past an obstacle within one substep.
+
+use bevy::math::{Isometry3d, Quat, Vec3A, primitives::InfinitePlane3d};
+
+use super::{Obstacle, Solid, Surface};
+use crate::solver::StepContext;
+
+/// An obstacle within one substep.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passage {
+    /// Its shape.
+    pub solid: Solid,
+    /// Pose at the start of the substep.
+    pub start: Isometry3d,
+    /// Pose at its end.
+    pub end: Isometry3d,
+    /// Distance that particles keep from it, m.
+    pub distance: f32,
+    /// Coulomb friction, no unit.
+    pub friction: f32,
+    /// The most that a particle leaves it by that was inside before, m.
+    pub parting: f32,
+}
+
+/// What brings a particle back to the surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Correction {
+    /// Outward normal of the surface.
+    pub normal: Vec3A,
+    /// How far it came to be behind the surface within the substep, m.
+    pub gained: f32,
+    /// How far it leaves of what it was inside before, m.
+    pub parted: f32,
+    /// Way of the surface at the point of contact within the substep, m.
+    pub surface_way: Vec3A,
+}
+
+impl Passage {
+    /// That of `obstacle`, a `solid` which goes from one pose to the other within a substep of `h` seconds.
+    pub fn new(solid: Solid, obstacle: &Obstacle, [start, end]: [Isometry3d; 2], ctx: &StepContext, h: f32) -> Self {
+        let (distance, friction) = (ctx.contact_distance(), ctx.material.friction * obstacle.friction);
+        let passage = Self { solid, start, end, distance, friction, parting: ctx.max_depenetration_velocity * h };
+        if start == end { passage.unturned() } else { passage }
+    }
+
+    /// What stays, without a rotation where it needs none.
+    fn unturned(mut self) -> Self {
+        let solid = match self.solid {
+            Solid::Sphere(_) => self.solid,
+            Solid::HalfSpace(plane) => Solid::HalfSpace(InfinitePlane3d { normal: self.end.rotation * plane.normal }),
+            _ => return self,
+        };
+        (self.start.rotation, self.end.rotation) = (Quat::IDENTITY, Quat::IDENTITY);
+        Self { solid, ..self }
+    }
+
+    /// Whether it goes anywhere.
+    pub fn moves(&self) -> bool {
+        self.start != self.end
+    }
+
+    /// The most that a place of it goes, m, which is as far as `far` from its origin.
+    pub fn way(&self, far: f32) -> f32 {
+        way_between(&self.start, &self.end, far)
+    }
+
+    /// The correction of a particle that went from `previous` to `position` and sees another side of the shape than
+    /// before: it came through something thin or sharp, or went by. Seen from the new side, it would be left on the wrong
+    /// one: the way in decides.
+    pub fn correction(&self, position: Vec3A, previous: Vec3A) -> Option<Correction> {
+        let to = self.end.inverse().transform_point(position);
+        let from = self.start.inverse().transform_point(previous);
+        let (entry, surface) = self.enter(from, to)?;
+        let gained = surface.normal.dot(entry - to);
+        let parted = (-surface.distance).clamp(0.0, self.parting);
+        if gained + parted <= 0.0 {
+            return None;
+        }
+        let touched = to + surface.normal * gained;
+        let surface_way = self.end.transform_point(touched) - self.start.transform_point(touched);
+        let normal = self.end.rotation * surface.normal;
+        Some(Correction { normal, gained: gained.max(0.0), parted: parted + gained.min(0.0), surface_way })
+    }
+
+    /// Where the straight way from `from` to `to` enters the shape, and the surface there. Sphere tracing (Hart 1996).
+    fn enter(&self, from: Vec3A, to: Vec3A) -> Option<(Vec3A, Surface)> {
+        const CLOSE: f32 = 1e-5;
+        const STEPS: u32 = 32;
+        let (direction, length) = (to - from).normalize_and_length();
+        let mut way = 0.0;
+        for _ in 0..STEPS {
+            let point = from + direction * way;
+            let mut surface = self.solid.surface(point);
+            surface.distance -= self.distance;
+            if surface.distance < CLOSE {
+                return Some((point, surface));
+            }
+            way += surface.distance;
+            if way > length {
+                return None;
+            }
+        }
+        None
+    }
+}
+
+impl Correction {
+    /// Moves a particle, with friction. What was inside before the substep leaves without gaining speed from it.
+    pub fn apply(&self, position: &mut Vec3A, previous: &mut Vec3A, friction: f32) {
+        *position += self.normal * (self.gained + self.parted);
+        *previous += self.normal * self.parted;
+        let way = *position - *previous - self.surface_way;
+        let slide = way - self.normal * way.dot(self.normal);
+        let hold = friction * self.gained;
+        let length = slide.length();
+        *position -= if length > hold { slide * (hold / length) } else { slide };
+    }
+}
+
+/// The most that places go between two poses, m, which are as far as `far` from the origin.
+pub(super) fn way_between(from: &Isometry3d, to: &Isometry3d, far: f32) -> f32 {
+    // |q1 - q0| is 2 sin(angle / 4), on the shorter of the two ways around; a place goes by 2 sin(angle / 2) of its
+    // distance, which is no more than twice that.
+    let turn = 2.0 * shorter_way(from.rotation, to.rotation);
+    // Nothing turns where infinity is as far as its origin.
+    let turned = if turn > 0.0 { turn * far } else { 0.0 };
+    from.translation.distance(to.translation) + turned
+}
+
+/// Distance between two unit quaternions as rotations.
+fn shorter_way(a: Quat, b: Quat) -> f32 {
+    (a - b).length().min((a + b).length())
+}
