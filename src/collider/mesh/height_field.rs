@@ -88,13 +88,13 @@ mod tests {
 
     #[test]
     fn heights_go_along_x_first_and_then_along_z() {
-        let field = HeightField::new(Vec2::new(6.0, 4.0), 4, 3, |x, z| 10.0 * x + z);
-        assert_eq!(field.heights, [-32., -12., 8., 28., -30., -10., 10., 30., -28., -8., 12., 32.]);
+        let field = HeightField::new(Vec2::new(8.0, 4.0), 5, 3, |x, z| 10.0 * x + z);
+        assert_eq!(field.heights, [-42., -22., -2., 18., 38., -40., -20., 0., 20., 40., -38., -18., 2., 22., 42.]);
         assert_eq!(field.rows(), 3);
         let (points, triangles) = field.triangles().unwrap();
-        assert_eq!(points[1], Vec3::new(-1.0, -12.0, -2.0));
-        assert_eq!(points[11], Vec3::new(3.0, 32.0, 2.0));
-        assert_eq!(triangles.len(), 2 * 3 * 2);
+        assert_eq!(points[1], Vec3::new(-2.0, -22.0, -2.0));
+        assert_eq!(points[14], Vec3::new(4.0, 42.0, 2.0));
+        assert_eq!(triangles.len(), 2 * 4 * 2);
         for [a, b, c] in triangles.into_iter().map(|triangle| triangle.map(|i| points[i as usize])) {
             assert!((b - a).cross(c - a).y > 0.0, "it faces up");
         }

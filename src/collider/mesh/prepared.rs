@@ -22,8 +22,9 @@ use crate::{
     solver::TriangleMesh,
 };
 
-/// Corners of triangles, or points of a hull, that are worked on within a step at most: some 10 ms.
-const MOST_AT_ONCE: usize = 15_000;
+/// Corners of triangles that are worked on within a step at most: those of 8000 triangles take some 10 ms, the longest
+/// that a frame can spare.
+const MOST_AT_ONCE: usize = 24_000;
 
 /// What the triangles of a collider are made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -65,6 +66,12 @@ type Key = (Source, [u32; 9]);
 impl Recipe {
     fn key(&self) -> Key {
         (self.source, self.scale.to_cols_array().map(f32::to_bits))
+    }
+
+    /// What it takes to make it, in corners of plain triangles.
+    fn effort(&self, contents: Contents) -> usize {
+        let corners = contents.corner_count();
+        if matches!(self.source, Source::ConvexHull(_)) { 2 * corners } else { corners }
     }
 }
 
@@ -117,7 +124,7 @@ impl PreparedMeshes {
             return Some(done.outcome.clone());
         }
         let recipe = *recipe;
-        let outcome = if contents.size() <= MOST_AT_ONCE {
+        let outcome = if recipe.effort(contents) <= MOST_AT_ONCE {
             contents.make(&recipe)
         } else {
             let begun = self.jobs.get_or_begin(key, || {
@@ -134,8 +141,8 @@ impl PreparedMeshes {
 }
 
 impl Contents<'_> {
-    /// About the number of corners of triangles.
-    fn size(self) -> usize {
+    /// Number of corners of triangles, about.
+    fn corner_count(self) -> usize {
         match self {
             Self::Mesh(mesh) => {
                 let vertices = || mesh.try_attribute(Mesh::ATTRIBUTE_POSITION).map_or(0, |positions| positions.len());

@@ -19,6 +19,9 @@ const THINNEST: f64 = 1e-5;
 /// A triangle whose height is less than this share of its longest edge has no side that rounding leaves sure.
 const SLIMMEST: f32 = 1e-6;
 
+/// By how much points are moved to find their hull where it isn't found else, as a share of their size.
+const UNEVEN: f32 = 1e-4;
+
 /// Triangles as an obstacle, and where they come from.
 #[derive(Debug)]
 pub(crate) struct Made {
@@ -48,17 +51,30 @@ pub(crate) fn hull_of(points: &[Vec3], triangles: &[[u32; 3]], scale: Mat3A) -> 
 
 /// The convex hull of `points`, m.
 pub(crate) fn hull(points: &[Vec3]) -> Result<Made, ColliderError> {
-    // A hull stays one under any scale, and is found best in a cube.
     let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
     let size = points.iter().copied().reduce(Vec3::max).unwrap_or_default() - low;
-    if !(size.is_finite() && size.min_element() > 0.0) {
-        return Err(if size.is_finite() { ColliderError::Flat } else { ColliderError::NoSize });
+    if !size.is_finite() {
+        return Err(ColliderError::NoSize);
     }
+    if points.len() < 4 || size.min_element() <= 0.0 {
+        return Err(ColliderError::Flat);
+    }
+    // A hull stays one under any scale, and is found best in a cube.
     let within: Vec<Vec3> = points.iter().map(|&point| (point - low) / size).collect();
-    let numbers = numbers(&within);
+    let found = hull_in_cube(points, &within);
+    if !matches!(found, Err(ColliderError::NoHull { .. })) {
+        return found;
+    }
+    // Many points in one plane can lead the search astray. Where they are a little uneven, they don't.
+    let uneven = |(i, &point): (usize, &Vec3)| point + (i as f32 * Vec3::new(0.8192, 0.6710, 0.5497)).fract() * UNEVEN;
+    hull_in_cube(points, &within.iter().enumerate().map(uneven).collect::<Vec<_>>())
+}
+
+/// The convex hull of `points` that are here or about here `within` a unit cube.
+fn hull_in_cube(points: &[Vec3], within: &[Vec3]) -> Result<Made, ColliderError> {
     let no_hull = |reason: String| ColliderError::NoHull { reason };
-    let (corners, triangles) = try_convex_hull(&within).map_err(|error| no_hull(error.to_string()))?;
-    let origin = numbers_of(&corners, &numbers)?;
+    let (corners, triangles) = try_convex_hull(within).map_err(|error| no_hull(error.to_string()))?;
+    let origin = numbers_of(&corners, &numbers(within))?;
     let corners: Vec<Vec3> = origin.iter().map(|&i| points[i as usize]).collect();
     // What is flat comes as two sheets.
     if thickness(&corners, &triangles).abs() <= THINNEST {
@@ -157,6 +173,8 @@ fn key(point: Vec3) -> [u32; 3] {
 
 #[cfg(test)]
 mod tests {
+    use core::f32::consts::FRAC_PI_8;
+
     use super::*;
 
     const PLAIN: Mat3A = Mat3A::IDENTITY;
@@ -286,14 +304,24 @@ mod tests {
     fn a_hull_holds_all_points_and_bulges_everywhere() {
         let mut random = fastrand::Rng::with_seed(7);
         let mut number = || random.f32() * 2.0 - 1.0;
-        for round in 0..60 {
+        let mut found = 0;
+        for round in 0..300 {
             let size = Vec3::new(1.0, 10.0_f32.powi(round % 5 - 3), 1.0);
-            // On a lattice many lie in one plane.
-            let snap = if round % 2 == 0 { 4.0 } else { 1e6 };
-            let points: Vec<Vec3> = (0..5 + round * 7)
-                .map(|_| (Vec3::new(number(), number(), number()) * snap).round() / snap * size + 3.0)
-                .collect();
+            // On a lattice, and on the ends of a cylinder, many lie in one plane.
+            let snap = [1e6, 4.0, 2.0][round as usize % 3];
+            let mut point = || {
+                let [x, y, z] = [number(), number(), number()];
+                let angle = (8.0 * x).round() * FRAC_PI_8;
+                let place = if round % 2 == 0 {
+                    Vec3::new(x, y, z)
+                } else {
+                    Vec3::new(ops::cos(angle), y.signum(), ops::sin(angle))
+                };
+                (place * snap).round() / snap * size + 3.0
+            };
+            let points: Vec<Vec3> = (0..8 + round % 60).map(|_| point()).collect();
             let Ok(Made { mesh, .. }) = hull(&points) else { continue };
+            found += 1;
             assert!(mesh.is_closed && volume(&mesh) > 0.0);
             for triangle in mesh.triangles() {
                 let [a, b, c] = triangle.map(|i| mesh.points[i as usize] / Vec3A::from(size));
@@ -302,6 +330,7 @@ mod tests {
                 assert!(out < 1e-2, "round {round}: {out}");
             }
         }
+        assert!(found > 290, "{found}");
     }
 
     #[test]
