@@ -1,26 +1,26 @@
 //! Finds the triangles of colliders that are no primitives, and where they are.
 
 use bevy::{
-    asset::LoadState,
-    ecs::{query::QueryData, system::SystemParam},
+    ecs::query::QueryData,
     math::{Affine3A, Isometry3d, Mat3A},
-    mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    mesh::skinning::SkinnedMesh,
     platform::collections::HashSet,
     prelude::*,
 };
 
 use super::{ClothCollider, ColliderMemory, ColliderShape, error::ColliderError};
 use crate::{
-    anchor::Poses,
     cloth::Cloth,
-    draw::mesh::ClothMesh,
     error::ClothError,
     solver::{MeshShape, Shape},
 };
+use library::Library;
 use posed::Posed;
 use prepared::{Contents, Prepared, Recipe, Source};
 
 mod height_field;
+mod hull;
+mod library;
 mod posed;
 mod prepared;
 mod scale;
@@ -40,16 +40,6 @@ pub(crate) struct MeshCollider {
     mesh: Option<&'static Mesh3d>,
     skeleton: Option<&'static SkinnedMesh>,
     is_cloth: Has<Cloth>,
-}
-
-/// Where triangles, skeletons and poses come from.
-#[derive(SystemParam)]
-pub(crate) struct Library<'w, 's> {
-    meshes: Res<'w, Assets<Mesh>>,
-    bindposes: Option<Res<'w, Assets<SkinnedMeshInverseBindposes>>>,
-    assets: Option<Res<'w, AssetServer>>,
-    cloths: Query<'w, 's, &'static ClothMesh>,
-    poses: Poses<'w, 's>,
 }
 
 /// What is known of the triangles of a collider.
@@ -122,10 +112,7 @@ impl MeshColliderItem<'_, '_> {
                 Some(found) => found,
                 None => return Ok(None),
             },
-            None => {
-                let pose = library.poses.compute_global_transform(self.entity);
-                scale::split(pose.map_err(|_| ColliderError::NoSize)?.affine())
-            }
+            None => library.pose_and_scale(self.entity)?,
         };
         let ColliderMemory { pose, triangles, .. } = &mut *self.memory;
         let recipe = triangles.recipe(source, scale)?;
@@ -171,7 +158,7 @@ impl MeshColliderItem<'_, '_> {
             _ => Source::Mesh(mesh),
         };
         let is_new = self.memory.triangles.in_force.as_ref().is_none_or(|(recipe, _)| recipe.source != source);
-        if is_new && library.cloths.iter().any(|cloth| cloth.drawn.id() == mesh) {
+        if is_new && library.is_of_cloth(mesh) {
             return Err(ColliderError::IsCloth);
         }
         Ok(source)
@@ -189,57 +176,5 @@ impl Triangles {
             return Err(ClothError::FlatTransform.into());
         }
         Ok(Recipe { source, scale: scale::rounded(scale) })
-    }
-}
-
-impl Library<'_, '_> {
-    /// The contents of a source. None while they aren't loaded.
-    fn contents<'a>(&'a self, source: Source, shape: &'a ColliderShape) -> Result<Option<Contents<'a>>, ColliderError> {
-        let Some(mesh) = source.mesh() else {
-            return Ok(match shape {
-                ColliderShape::HeightField(field) => Some(Contents::HeightField(field)),
-                _ => None,
-            });
-        };
-        if let Some(mesh) = self.meshes.get(mesh) {
-            return Ok(Some(Contents::Mesh(mesh)));
-        }
-        match self.assets.as_ref().map(|assets| assets.load_state(mesh)) {
-            Some(LoadState::Failed(error)) => Err(ClothError::NotLoaded { reason: error.to_string() }.into()),
-            _ => Ok(None),
-        }
-    }
-
-    /// Writes what each joint does to the mesh's space, up to the first that isn't there. Returns the frame that they do
-    /// it in, which is upright and where the first joint is, and the mesh's scale as far as it matters to its triangles:
-    /// whether it is mirrored. None while the bind pose isn't loaded.
-    ///
-    /// The entity's own transform has no say, as it hasn't for what is drawn.
-    fn find_joints(
-        &self,
-        skeleton: &SkinnedMesh,
-        joints: &mut Vec<Affine3A>,
-    ) -> Result<Option<(Isometry3d, Mat3A)>, ColliderError> {
-        let bindposes = self.bindposes.as_ref().and_then(|poses| poses.get(&skeleton.inverse_bindposes));
-        let Some(bindposes) = bindposes else { return Ok(None) };
-        joints.clear();
-        let poses = skeleton.joints.iter().map_while(|&joint| self.poses.compute_global_transform(joint).ok());
-        joints.extend(poses.map(|pose| pose.affine()));
-        joints.truncate(bindposes.len());
-        let Some(first) = joints.first() else {
-            return Err(ColliderError::Skeleton { needed: skeleton.joints.len().max(1), found: 0 });
-        };
-        let place = first.translation;
-        for (joint, &bindpose) in joints.iter_mut().zip(&**bindposes) {
-            // Differences first: far from the world's origin, only they have precision left.
-            joint.translation -= place;
-            *joint *= Affine3A::from_mat4(bindpose);
-        }
-        if !(place.is_finite() && joints.iter().all(|joint| joint.is_finite())) {
-            return Err(ColliderError::NoSize);
-        }
-        let is_mirrored = joints[0].matrix3.determinant() < 0.0;
-        let mirror = Mat3A::from_diagonal(Vec3::new(if is_mirrored { -1.0 } else { 1.0 }, 1.0, 1.0));
-        Ok(Some((Isometry3d::from_translation(place), mirror)))
     }
 }

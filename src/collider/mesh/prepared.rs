@@ -12,6 +12,7 @@ use bevy::{
 
 use super::{
     height_field::HeightField,
+    hull::hull_of,
     skin::Skin,
     triangles::{self, Made},
 };
@@ -169,7 +170,7 @@ fn make_from_mesh(mesh: &Mesh, recipe: &Recipe) -> Outcome {
         return Err(ClothError::NotInMainWorld.into());
     }
     let SourceMesh { positions, triangles, .. } = SourceMesh::read(mesh)?;
-    let make = if matches!(recipe.source, Source::ConvexHull(_)) { triangles::hull_of } else { triangles::surface };
+    let make = if matches!(recipe.source, Source::ConvexHull(_)) { hull_of } else { triangles::surface };
     let Made { mesh: made, origin } = make(&positions, &triangles, recipe.scale)?;
     Ok(Prepared { mesh: Arc::new(made), skin: Skin::read(mesh, &positions, &origin).map(Arc::new) })
 }

@@ -5,22 +5,16 @@ use bevy::{
     platform::collections::HashMap,
     prelude::*,
 };
-use parry3d::{
-    shape::{TriMesh, TriMeshFlags},
-    transformation::try_convex_hull,
-};
+use parry3d::shape::{TriMesh, TriMeshFlags};
 
 use crate::collider::error::ColliderError;
 use crate::{build::weld::weld, error::ClothError, solver::TriangleMesh};
 
 /// A closed surface whose volume is less than this share of its area times its size is two sheets, one on the other.
-const THINNEST: f64 = 1e-5;
+pub(super) const THINNEST: f64 = 1e-5;
 
 /// A triangle whose height is less than this share of its longest edge has no side that rounding leaves sure.
 const SLIMMEST: f32 = 1e-6;
-
-/// By how much points are moved to find their hull where it isn't found else, as a share of their size.
-const UNEVEN: f32 = 1e-4;
 
 /// Triangles as an obstacle, and where they come from.
 #[derive(Debug)]
@@ -28,6 +22,14 @@ pub(crate) struct Made {
     pub mesh: TriangleMesh,
     /// For each of its points, the number of the first of the given ones that it stands for.
     pub origin: Vec<u32>,
+}
+
+impl Made {
+    /// The same, where the points that it was made of were themselves made of others, which are at `origin`.
+    pub(super) fn made_of(mut self, origin: &[u32]) -> Self {
+        self.origin.iter_mut().for_each(|i| *i = origin[*i as usize]);
+        self
+    }
 }
 
 /// The surface that `triangles` between `points` (m) make, after `scale`: solid if they enclose a volume, else thin.
@@ -38,53 +40,8 @@ pub(crate) fn surface(points: &[Vec3], triangles: &[[u32; 3]], scale: Mat3A) -> 
     let welded = weld(points, triangles);
     let corner = |vertex: u32| welded.particle_of_vertex[vertex as usize];
     let triangles = triangles.iter().map(|triangle| triangle.map(corner)).collect();
-    let made = clean(places(points, &welded.vertex_of_particle, scale)?, triangles)?;
-    Ok(Made { origin: made.origin.iter().map(|&i| welded.vertex_of_particle[i as usize]).collect(), ..made })
-}
-
-/// The convex hull of the corners of `triangles` between `points` (m), after `scale`.
-pub(crate) fn hull_of(points: &[Vec3], triangles: &[[u32; 3]], scale: Mat3A) -> Result<Made, ColliderError> {
-    let welded = weld(points, triangles);
-    let made = hull(&places(points, &welded.vertex_of_particle, scale)?)?;
-    Ok(Made { origin: made.origin.iter().map(|&i| welded.vertex_of_particle[i as usize]).collect(), ..made })
-}
-
-/// The convex hull of `points`, m.
-pub(crate) fn hull(points: &[Vec3]) -> Result<Made, ColliderError> {
-    let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
-    let size = points.iter().copied().reduce(Vec3::max).unwrap_or_default() - low;
-    if !size.is_finite() {
-        return Err(ColliderError::NoSize);
-    }
-    if points.len() < 4 || size.min_element() <= 0.0 {
-        return Err(ColliderError::Flat);
-    }
-    // A hull stays one under any scale, and is found best in a cube.
-    let within: Vec<Vec3> = points.iter().map(|&point| (point - low) / size).collect();
-    let found = hull_in_cube(points, &within);
-    if !matches!(found, Err(ColliderError::NoHull { .. })) {
-        return found;
-    }
-    // Many points in one plane can lead the search astray. Where they are a little uneven, they don't.
-    let uneven = |(i, &point): (usize, &Vec3)| point + (i as f32 * Vec3::new(0.8192, 0.6710, 0.5497)).fract() * UNEVEN;
-    hull_in_cube(points, &within.iter().enumerate().map(uneven).collect::<Vec<_>>())
-}
-
-/// The convex hull of `points` that are here or about here `within` a unit cube.
-fn hull_in_cube(points: &[Vec3], within: &[Vec3]) -> Result<Made, ColliderError> {
-    let no_hull = |reason: String| ColliderError::NoHull { reason };
-    let (corners, triangles) = try_convex_hull(within).map_err(|error| no_hull(error.to_string()))?;
-    let origin = numbers_of(&corners, &numbers(within))?;
-    let corners: Vec<Vec3> = origin.iter().map(|&i| points[i as usize]).collect();
-    // What is flat comes as two sheets.
-    if thickness(&corners, &triangles).abs() <= THINNEST {
-        return Err(ColliderError::Flat);
-    }
-    let made = clean(corners, triangles)?;
-    if !made.mesh.is_closed {
-        return Err(no_hull("it has gaps".into()));
-    }
-    Ok(Made { origin: made.origin.iter().map(|&i| origin[i as usize]).collect(), ..made })
+    let places = places(points, &welded.vertex_of_particle, scale)?;
+    Ok(clean(places, triangles)?.made_of(&welded.vertex_of_particle))
 }
 
 /// Triangles that are as they should be already and enclose nothing, after `scale`.
@@ -95,14 +52,14 @@ pub(crate) fn sheet(points: &[Vec3], triangles: &[[u32; 3]], scale: Mat3A) -> Re
 }
 
 /// The places of the points with these `numbers`, all of them finite.
-fn places(points: &[Vec3], numbers: &[u32], scale: Mat3A) -> Result<Vec<Vec3>, ColliderError> {
+pub(super) fn places(points: &[Vec3], numbers: &[u32], scale: Mat3A) -> Result<Vec<Vec3>, ColliderError> {
     // Adding zero makes -0 the same as 0.
     let places: Vec<Vec3> = numbers.iter().map(|&i| scale * points[i as usize] + Vec3::ZERO).collect();
     if places.iter().all(|place| place.is_finite()) { Ok(places) } else { Err(ColliderError::NoSize) }
 }
 
 /// Drops what is no triangle or there already, and finds out whether the others enclose a volume.
-fn clean(points: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Made, ColliderError> {
+pub(super) fn clean(points: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Made, ColliderError> {
     let numbers = numbers(&points);
     let flags = TriMeshFlags::DELETE_DEGENERATE_TRIANGLES
         | TriMeshFlags::DELETE_DUPLICATE_TRIANGLES
@@ -139,7 +96,7 @@ fn with_area(points: &[Vec3], triangles: &[[u32; 3]], is_closed: bool) -> Result
 }
 
 /// Volume that a closed surface encloses, as a share of its area times its size; negative if it is inside out.
-fn thickness(points: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
+pub(super) fn thickness(points: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
     let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
     let high = points.iter().copied().reduce(Vec3::max).unwrap_or_default();
     let (mut volume, mut area) = (0.0, 0.0);
@@ -153,7 +110,7 @@ fn thickness(points: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
 }
 
 /// The first point at each place.
-fn numbers(points: &[Vec3]) -> HashMap<[u32; 3], u32> {
+pub(super) fn numbers(points: &[Vec3]) -> HashMap<[u32; 3], u32> {
     let mut numbers = HashMap::default();
     for (number, &point) in (0..).zip(points) {
         numbers.entry(key(point)).or_insert(number);
@@ -162,7 +119,7 @@ fn numbers(points: &[Vec3]) -> HashMap<[u32; 3], u32> {
 }
 
 /// The numbers of these `points`, each of which is one of those that were numbered.
-fn numbers_of(points: &[Vec3], numbers: &HashMap<[u32; 3], u32>) -> Result<Vec<u32>, ColliderError> {
+pub(super) fn numbers_of(points: &[Vec3], numbers: &HashMap<[u32; 3], u32>) -> Result<Vec<u32>, ColliderError> {
     let number = |&point: &Vec3| numbers.get(&key(point)).copied();
     points.iter().map(number).collect::<Option<_>>().ok_or(ColliderError::NoSize)
 }
@@ -172,10 +129,8 @@ fn key(point: Vec3) -> [u32; 3] {
 }
 
 #[cfg(test)]
-mod tests {
-    use core::f32::consts::FRAC_PI_8;
-
-    use super::*;
+pub(super) mod tests {
+    use super::{super::hull::hull_of, *};
 
     const PLAIN: Mat3A = Mat3A::IDENTITY;
 
@@ -188,12 +143,12 @@ mod tests {
     }
 
     /// Volume that the triangles enclose, m³, facing out of it.
-    fn volume(mesh: &TriangleMesh) -> f32 {
+    pub fn volume(mesh: &TriangleMesh) -> f32 {
         let corners = |triangle: &[u32; 3]| triangle.map(|i| mesh.points[i as usize]);
         mesh.triangles().iter().map(corners).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
     }
 
-    fn refusal(made: Result<Made, ColliderError>) -> ColliderError {
+    pub fn refusal(made: Result<Made, ColliderError>) -> ColliderError {
         made.map(|made| made.mesh).expect_err("it is refused")
     }
 
@@ -216,7 +171,8 @@ mod tests {
         // One that no triangle has.
         points.insert(0, Vec3::splat(9.0));
         let triangles: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.map(|i| i + 1)).collect();
-        for made in [surface(&points, &triangles, PLAIN).unwrap(), hull_of(&points, &triangles, PLAIN).unwrap()] {
+        for make in [surface, hull_of] {
+            let made = make(&points, &triangles, PLAIN).unwrap();
             assert_eq!(made.mesh.points.len(), 8);
             for (&point, &origin) in made.mesh.points.iter().zip(&made.origin) {
                 let first = points.iter().position(|&other| other == Vec3::from(point));
@@ -284,53 +240,6 @@ mod tests {
             refusal(hull_of(&points, &triangles, scale));
             refusal(sheet(&points, &triangles, scale));
         }
-        assert_eq!(refusal(hull(&[Vec3::NAN; 8])), ColliderError::NoSize);
-        assert_eq!(refusal(hull(&[Vec3::ZERO, Vec3::ONE, Vec3::X, Vec3::INFINITY])), ColliderError::NoSize);
-    }
-
-    #[test]
-    fn points_in_a_plane_have_no_hull() {
-        let tilted = |a: f32, b: f32| Vec3::new(a, b, 0.3 * a - 0.7 * b);
-        let plane: Vec<Vec3> = (0..40).map(|i| tilted((i % 7) as f32, (i / 7) as f32)).collect();
-        assert_eq!(refusal(hull(&plane)), ColliderError::Flat);
-        let line: Vec<Vec3> = (0..40).map(|i| Vec3::new(1.0, 2.0, 3.0) * i as f32).collect();
-        let level: Vec<Vec3> = plane.iter().map(|point| point.with_y(2.0)).collect();
-        for points in [&line[..], &line[..1], &line[..2], &level, &[]] {
-            assert_eq!(refusal(hull(points)), ColliderError::Flat, "{points:?}");
-        }
-    }
-
-    #[test]
-    fn a_hull_holds_all_points_and_bulges_everywhere() {
-        let mut random = fastrand::Rng::with_seed(7);
-        let mut number = || random.f32() * 2.0 - 1.0;
-        let mut found = 0;
-        for round in 0..300 {
-            let size = Vec3::new(1.0, 10.0_f32.powi(round % 5 - 3), 1.0);
-            // On a lattice, and on the ends of a cylinder, many lie in one plane.
-            let snap = [1e6, 4.0, 2.0][round as usize % 3];
-            let mut point = || {
-                let [x, y, z] = [number(), number(), number()];
-                let angle = (8.0 * x).round() * FRAC_PI_8;
-                let place = if round % 2 == 0 {
-                    Vec3::new(x, y, z)
-                } else {
-                    Vec3::new(ops::cos(angle), y.signum(), ops::sin(angle))
-                };
-                (place * snap).round() / snap * size + 3.0
-            };
-            let points: Vec<Vec3> = (0..8 + round % 60).map(|_| point()).collect();
-            let Ok(Made { mesh, .. }) = hull(&points) else { continue };
-            found += 1;
-            assert!(mesh.is_closed && volume(&mesh) > 0.0);
-            for triangle in mesh.triangles() {
-                let [a, b, c] = triangle.map(|i| mesh.points[i as usize] / Vec3A::from(size));
-                let normal = (b - a).cross(c - a).normalize();
-                let out = points.iter().map(|&point| normal.dot(Vec3A::from(point / size) - a)).fold(0.0, f32::max);
-                assert!(out < 1e-2, "round {round}: {out}");
-            }
-        }
-        assert!(found > 290, "{found}");
     }
 
     #[test]
