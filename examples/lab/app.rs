@@ -6,13 +6,16 @@ use std::{
 };
 
 use bevy::{mesh::MeshPlugin, prelude::*, time::TimeUpdateStrategy};
-use bevy_drape::{
-    prelude::*,
-    solver::{self, Scratch},
-};
+use bevy_drape::prelude::*;
 use serde_json::{Value, json};
 
-use super::{Options, PinnedPart, Solver, measure, mesh::MeshSource, scene};
+use super::{
+    hang::hang,
+    measure,
+    mesh::MeshSource,
+    options::{DENSITY, Options, PinnedPart, Solver},
+    scene::FRAME,
+};
 
 /// Frames before the measurement: pools and buffers fill.
 const WARM_UP: u32 = 30;
@@ -25,12 +28,9 @@ pub fn one_cloth(options: &Options) -> io::Result<Value> {
     let mut empty = headless(Some(plugin));
     let mut app = headless(Some(plugin));
     spawn_hanging(&mut app, options);
-    let mut scene = scene::hang(options, &MeshSource::Grid, PinnedPart::Corners)?;
-    let mut scratch = Scratch::default();
+    let mut scene = hang(options, &MeshSource::Grid, PinnedPart::Corners)?;
     let mut step = || {
-        let mut particles = core::mem::take(&mut scene.particles);
-        solver::step(&mut particles, &scene.topology, &scene.context(options, None), &mut scratch);
-        scene.particles = particles;
+        scene.step(None);
     };
     let [mut updates, mut empties, mut bares, mut solvers, mut around] = [const { Vec::new() }; 5];
     for frame in 0..WARM_UP + options.frames {
@@ -73,7 +73,7 @@ fn spawn_hanging(app: &mut App, options: &Options) {
             tether_slack: Some(options.tether_slack),
             ..default()
         },
-        Fabric { density: scene::DENSITY, damping: options.damping, drag: 0.0, lift: 0.0, ..default() },
+        Fabric { density: DENSITY, damping: options.damping, drag: 0.0, lift: 0.0, ..default() },
         ClothSprings::default(),
         Pins::edge_corners(ClothEdge::Top),
     ));
@@ -138,7 +138,7 @@ pub fn many_flags(cloths: u32, frames: u32, single_threaded: bool) -> Value {
 
 /// An app that steps once an update.
 fn headless(plugin: Option<ClothPlugin>) -> App {
-    let frame = Duration::from_secs_f32(scene::FRAME);
+    let frame = Duration::from_secs_f32(FRAME);
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin))
         .insert_resource(Time::<Fixed>::from_duration(frame))

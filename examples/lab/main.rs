@@ -8,19 +8,18 @@
 //! cargo run --release --example lab -- --help
 //! ```
 
-use std::{io, path::PathBuf, process::ExitCode, str::FromStr};
+use std::{io, path::PathBuf, process::ExitCode};
 
-use bevy_drape::{
-    prelude::Fabric,
-    solver::{Effort, LevelPass, Topology},
-};
-use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
+use clap::{Parser, Subcommand, builder::PossibleValuesParser};
 use serde_json::Value;
 
 mod app;
+mod contact;
+mod hang;
 mod laboratory;
 mod measure;
 mod mesh;
+mod options;
 mod oracle;
 mod pins;
 mod report;
@@ -30,8 +29,10 @@ mod sizes;
 mod sweep;
 mod threads;
 
+use contact::Contact;
 use laboratory::{EXPERIMENTS, Extent};
 use mesh::MeshSource;
+use options::{Options, PinnedPart};
 use oracle::Oracle;
 
 #[derive(Parser)]
@@ -113,143 +114,8 @@ enum Experiment {
         #[arg(long, value_name = "FILE.md", conflicts_with_all = ["names", "brief"])]
         report: Option<PathBuf>,
     },
-    /// The same cloth falls on a sphere over a ground
-    Drape {
-        #[command(flatten)]
-        options: Options,
-        /// grid, delaunay, hex, skirt, ell, sleeve, or a FILE.glb, which is scaled to 1 m
-        #[arg(long, default_value = "grid")]
-        mesh: MeshSource,
-    },
-}
-
-#[derive(Args, Clone)]
-struct Options {
-    /// Particles along each side, n; n² or about as many on other meshes than the grid, and without effect on a file
-    #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=1024))]
-    n: u32,
-    /// Moves the vertices inside a grid, delaunay, hex or ell at random by up to so much of a cell
-    #[arg(long, default_value_t = 0.0)]
-    jitter: f32,
-    /// Substeps a frame; by default as many as the strain needs (strands) or 8 (xpbd). The explicit solver finds its own
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
-    substeps: Option<u32>,
-    /// The largest strain that is wanted: strands choose their substeps by it
-    #[arg(long, default_value_t = 0.01)]
-    max_strain: f32,
-    /// Frames of 1/60 s
-    #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..))]
-    frames: u32,
-    /// How the springs are integrated
-    #[arg(long, value_enum, default_value = "strands")]
-    solver: Solver,
-    /// Coarse levels of strands: auto, none, or STRIDExITERATIONS,.. as in 8x8,4x4
-    #[arg(long, default_value = "auto")]
-    levels: Levels,
-    /// Whether particles are tethered to the pins (xpbd only)
-    #[arg(long, value_enum, default_value = "on")]
-    tethers: Switch,
-    /// By how much of its length a tether gives
-    #[arg(long, default_value_t = 0.002)]
-    tether_slack: f32,
-    /// Stiffness of springs along the threads, of those along diagonals, and of those that bend, N/m; 0 leaves them out
-    #[arg(long, value_names = ["STRUCTURAL", "SHEAR", "BEND"], num_args = 3, default_values_t = [5000.0, 500.0, 20.0])]
-    stiffness: Vec<f32>,
-    /// A preset in place of those springs and of 0.2 kg/m², as cotton_woven: its density, moduli and rigidity
-    #[arg(long, value_parser = fabric)]
-    fabric: Option<Fabric>,
-    /// Bending rigidity of that fabric, N·m
-    #[arg(long, requires = "fabric")]
-    rigidity: Option<f32>,
-    /// Damping of the velocity, 1/s
-    #[arg(long, default_value_t = 1.0)]
-    damping: f32,
-    /// What of the cloth meets itself
-    #[arg(long, value_enum, default_value = "off")]
-    self_collision: SelfContact,
-    /// Threads that a large grid is shared by; with more than one, time is the wall clock's instead of the thread's own
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
-    threads: u32,
-    /// Writes the positions as text, a particle a line: x y z in m
-    #[arg(long, value_name = "FILE")]
-    positions: Option<PathBuf>,
-    /// Writes the positions of this moment instead of the last
-    #[arg(long, requires = "positions", value_name = "SECONDS")]
-    at_seconds: Option<f32>,
-}
-
-fn fabric(name: &str) -> Result<Fabric, String> {
-    let known = Fabric::PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ");
-    let preset = Fabric::PRESETS.into_iter().find(|preset| preset.name == name);
-    preset.map(|preset| preset.fabric).ok_or(format!("fabrics are {known}"))
-}
-
-/// Which coarse levels are used.
-#[derive(Clone)]
-enum Levels {
-    Auto,
-    Set(Vec<LevelPass>),
-}
-
-impl FromStr for Levels {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let pass = |level: &str| {
-            let (stride, iterations) = level.split_once('x')?;
-            Some(LevelPass { stride: stride.parse().ok()?, iterations: iterations.parse().ok()? })
-        };
-        match text {
-            "auto" => Ok(Self::Auto),
-            "none" => Ok(Self::Set(Vec::new())),
-            list => {
-                let passes: Option<Vec<LevelPass>> = list.split(',').map(pass).collect();
-                passes.map(Self::Set).ok_or("levels are auto, none, or strides and iterations as in 8x8,4x4")
-            }
-        }
-    }
-}
-
-impl Options {
-    /// Substeps and levels for a mesh.
-    fn effort(&self, topology: &Topology) -> Effort {
-        let mut effort = match (self.solver, self.substeps) {
-            (Solver::Strands, None) => Effort::to_hold(self.max_strain, topology),
-            (Solver::Strands, Some(substeps)) => Effort::fixed(substeps, Effort::levels_for(substeps, topology)),
-            (_, substeps) => Effort::fixed(substeps.unwrap_or(8), Vec::new()),
-        };
-        if let Levels::Set(levels) = &self.levels {
-            effort.levels.clone_from(levels);
-            effort.careful_levels.clone_from(levels);
-        }
-        effort
-    }
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum PinnedPart {
-    Corners,
-    Top,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Solver {
-    Strands,
-    Xpbd,
-    Explicit,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum SelfContact {
-    Off,
-    Particles,
-    Robust,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Switch {
-    On,
-    Off,
+    #[command(flatten)]
+    Contact(Contact),
 }
 
 fn main() -> ExitCode {
@@ -307,11 +173,11 @@ impl Experiment {
                     let need = format!("--compare-oracle compares after {} frames; run as many or more", oracle::FRAME);
                     return Err(io::Error::other(need));
                 }
-                let scene = scene::hang(options, mesh, *pins)?;
-                let oracle = compare_oracle.then(|| Oracle::run(&scene, &scene.context(options, None)));
-                measure::run("hang", options, scene, oracle.as_ref())
+                let scene = hang::hang(options, mesh, *pins)?;
+                let oracle = compare_oracle.then(|| Oracle::run(&scene));
+                measure::run("hang", options, mesh, scene, oracle.as_ref())
             }
-            Self::Drape { options, mesh } => measure::run("drape", options, scene::drape(options, mesh)?, None),
+            Self::Contact(contact) => contact.measure(),
             Self::Threads { options } => threads::compare(options),
             Self::Shares { options } => shares::of_frame(options),
             Self::App { options } => app::one_cloth(options),

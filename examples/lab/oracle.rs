@@ -10,7 +10,7 @@
 use bevy::math::{DVec3, Vec3A};
 use bevy_drape::solver::{SpringKind, StepContext};
 
-use super::scene::Scene;
+use super::scene::{self, Scene};
 
 /// The frame after which a run is compared: 0.5 s.
 pub const FRAME: u32 = 30;
@@ -38,16 +38,18 @@ pub struct Oracle {
 }
 
 impl Oracle {
-    /// Runs the springs of `scene` from where it stands. Fixed particles stay, and there are no tethers.
-    pub fn run(scene: &Scene, ctx: &StepContext) -> Self {
-        let mut cloth = Cloth::new(scene, ctx);
+    /// Runs the springs of the cloth in `scene` from where it stands. Fixed particles stay, and there are no tethers.
+    pub fn run(scene: &Scene) -> Self {
+        let hung = &scene.cloths[0];
+        let ctx = scene.surroundings.context(&hung.rig, None);
+        let mut cloth = Cloth::new(hung, &ctx);
         let steps = (MOMENT / cloth.longest_step()).ceil();
         let h = MOMENT / steps;
         let decay = (-f64::from(ctx.material.damping) * h).exp();
         for _ in 0..steps as u64 {
             cloth.step(h, decay);
         }
-        let structural = scene.topology.springs_of(SpringKind::Structural);
+        let structural = hung.topology.springs_of(SpringKind::Structural);
         let strains = structural.map(|s| {
             let [a, b] = [s.a, s.b].map(|i| cloth.position[i as usize]);
             a.distance(b) / f64::from(s.rest) - 1.0
@@ -83,10 +85,10 @@ struct Cloth {
 }
 
 impl Cloth {
-    fn new(scene: &Scene, ctx: &StepContext) -> Self {
-        let count = scene.particles.len();
-        let springs = scene.topology.batches.iter().flat_map(|batch| {
-            let springs = scene.topology.springs[batch.range.clone()].iter();
+    fn new(hung: &scene::Cloth, ctx: &StepContext) -> Self {
+        let count = hung.particles.len();
+        let springs = hung.topology.batches.iter().flat_map(|batch| {
+            let springs = hung.topology.springs[batch.range.clone()].iter();
             springs.map(move |s| {
                 let stiffness = ctx.material.spring(batch.kind, s).constants.stiffness.into();
                 Spring { a: s.a, b: s.b, rest: s.rest.into(), stiffness }
@@ -94,10 +96,10 @@ impl Cloth {
         });
         Self {
             springs: springs.collect(),
-            position: scene.particles.position.iter().map(|p| p.as_dvec3()).collect(),
+            position: hung.particles.position.iter().map(|p| p.as_dvec3()).collect(),
             velocity: vec![DVec3::ZERO; count],
             force: vec![DVec3::ZERO; count],
-            inverse_mass: scene.particles.inverse_mass.iter().copied().map(f64::from).collect(),
+            inverse_mass: hung.particles.inverse_mass.iter().copied().map(f64::from).collect(),
             gravity: ctx.gravity.as_dvec3(),
         }
     }

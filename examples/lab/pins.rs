@@ -3,7 +3,7 @@
 use bevy::math::FloatOrd;
 use bevy_drape::solver::Topology;
 
-use super::{PinnedPart, mesh::Top};
+use super::{mesh::Top, options::PinnedPart};
 
 /// The particles of the `top` in order: all of them, or the two that are farthest apart. A ring hangs by all.
 pub fn choose(topology: &Topology, top: &Top, part: PinnedPart) -> Vec<u32> {

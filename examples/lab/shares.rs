@@ -4,7 +4,12 @@ use std::io;
 
 use serde_json::{Map, Value, json};
 
-use super::{Levels, Options, PinnedPart, Switch, measure, mesh::MeshSource, scene};
+use super::{
+    hang::hang,
+    measure,
+    mesh::MeshSource,
+    options::{Levels, Options, PinnedPart, Switch},
+};
 
 /// How often everything is run, by turns.
 const ROUNDS: usize = 5;
@@ -25,7 +30,8 @@ const PARTS: [(&str, fn(&mut Options)); 5] = [
 /// with it and without.
 pub fn of_frame(options: &Options) -> io::Result<Value> {
     // Without tethers a cloth would choose more substeps.
-    let effort = options.effort(&scene::hang(options, &MeshSource::Grid, PinnedPart::Corners)?.topology);
+    let grid = &MeshSource::Grid;
+    let effort = hang(options, grid, PinnedPart::Corners)?.cloths.swap_remove(0).rig.effort;
     let whole = Options { substeps: Some(effort.substeps), levels: Levels::Set(effort.levels), ..options.clone() };
     let mut settings = vec![whole];
     for (_, leave_out) in PARTS {
@@ -37,8 +43,7 @@ pub fn of_frame(options: &Options) -> io::Result<Value> {
     let mut line = Value::Null;
     for _ in 0..ROUNDS {
         for (options, fastest) in settings.iter().zip(&mut fastest).rev() {
-            line =
-                measure::run("shares", options, scene::hang(options, &MeshSource::Grid, PinnedPart::Corners)?, None)?;
+            line = measure::run("shares", options, grid, hang(options, grid, PinnedPart::Corners)?, None)?;
             *fastest = line["us_per_frame_median"].as_f64().unwrap_or(f64::INFINITY).min(*fastest);
         }
     }

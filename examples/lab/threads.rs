@@ -3,14 +3,13 @@
 use std::{io, time::Instant};
 
 use bevy::tasks::{TaskPool, TaskPoolBuilder};
-use bevy_drape::solver::{self, Scratch};
 use serde_json::{Value, json};
 
 use super::{
-    Options, PinnedPart,
-    measure::median,
+    hang::hang,
+    measure::{self, median},
     mesh::MeshSource,
-    scene::{self, Scene},
+    options::{Options, PinnedPart},
 };
 
 /// A pool that makes `threads` with the one that asks it for work.
@@ -22,7 +21,7 @@ pub fn pool(threads: u32) -> Option<TaskPool> {
 /// side, each on its own. Wall clock.
 pub fn compare(options: &Options) -> io::Result<Value> {
     let pool = pool(options.threads).ok_or_else(|| io::Error::other("--threads has to be 2 or more to be compared"))?;
-    let cloth = || Ok::<_, io::Error>(Cloth::new(scene::hang(options, &MeshSource::Grid, PinnedPart::Corners)?));
+    let cloth = || hang(options, &MeshSource::Grid, PinnedPart::Corners);
     let (mut alone, mut shared) = (cloth()?, cloth()?);
     let mut many = (0..options.threads).map(|_| cloth()).collect::<io::Result<Vec<_>>>()?;
     let mut microseconds = [const { Vec::new() }; 3];
@@ -32,10 +31,20 @@ pub fn compare(options: &Options) -> io::Result<Value> {
             work();
             microseconds[of].push(begun.elapsed().as_secs_f64() * 1e6);
         };
-        time(0, &mut || alone.step(options, None));
-        time(1, &mut || shared.step(options, Some(&pool)));
+        time(0, &mut || {
+            alone.step(None);
+        });
+        time(1, &mut || {
+            shared.step(Some(&pool));
+        });
         time(2, &mut || {
-            pool.scope(|scope| many.iter_mut().for_each(|cloth| scope.spawn(async move { cloth.step(options, None) })));
+            pool.scope(|scope| {
+                many.iter_mut().for_each(|cloth| {
+                    scope.spawn(async move {
+                        cloth.step(None);
+                    })
+                })
+            });
         });
     }
     let [alone_us, shared_us, many_us] = microseconds.map(median);
@@ -44,31 +53,13 @@ pub fn compare(options: &Options) -> io::Result<Value> {
         "scene": "threads",
         "n": options.n,
         "threads": options.threads,
-        "levels": alone.scene.levels(),
+        "levels": measure::levels(&alone.cloths[0]),
         "us_one_thread": alone_us.round(),
         "us_shared": shared_us.round(),
         "us_side_by_side": many_us.round(),
         "speed_up": speed_up,
         "speed_up_side_by_side": of_many,
         "share": speed_up / of_many,
-        "same_bits": alone.scene.particles == shared.scene.particles,
+        "same_bits": alone.cloths[0].particles == shared.cloths[0].particles,
     }))
-}
-
-struct Cloth {
-    scene: Scene,
-    scratch: Scratch,
-}
-
-impl Cloth {
-    fn new(scene: Scene) -> Self {
-        Self { scene, scratch: Scratch::default() }
-    }
-
-    fn step(&mut self, options: &Options, pool: Option<&TaskPool>) {
-        let mut particles = core::mem::take(&mut self.scene.particles);
-        let ctx = self.scene.context(options, pool);
-        solver::step(&mut particles, &self.scene.topology, &ctx, &mut self.scratch);
-        self.scene.particles = particles;
-    }
 }

@@ -109,7 +109,9 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut Touch) {
             cloth.advance(i, span.clone());
         }
         if may_touch && let Some(Substep { h, ctx, .. }) = cloths.first().map(|cloth| cloth.substep) {
-            touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
+            let touched = touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
+            // Whose they are isn't known: they count once.
+            cloths[0].touched = touched;
         }
         for cloth in &mut *cloths {
             cloth.finish(span.clone());
@@ -141,7 +143,8 @@ impl<'a> Plan<'a> {
         }
         let is_near = contact::is_any_near(particles, ctx, dt);
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
-        let with_care = is_near || !is_tethered || !ctx.grabs.is_empty();
+        let touches = ctx.self_collision != SelfCollision::Off;
+        let with_care = is_near || touches || !is_tethered || !ctx.grabs.is_empty();
         let (wanted, levels) = ctx.effort.of_step(with_care, dt);
         let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
             Method::Strands => (u32::MAX, wanted, 1.0, levels),
@@ -178,6 +181,8 @@ pub(super) struct Running<'a> {
     /// Whether threads that share the work have finished the substep.
     is_finished: bool,
     contacts: u32,
+    /// Pairs of features that touched in the latest substep.
+    touched: u32,
 }
 
 impl<'a> Running<'a> {
@@ -226,6 +231,7 @@ impl<'a> Running<'a> {
             has_moved,
             is_finished: false,
             contacts: 0,
+            touched: 0,
         }
     }
 
@@ -284,7 +290,8 @@ impl<'a> Running<'a> {
 
     /// Hands the state back.
     fn end(self) -> StepReport {
-        let Self { particles, scratch, substep, substeps, needed_substeps, contacts, .. } = self;
+        let Self { particles, scratch, substep, substeps, needed_substeps, contacts, touched, .. } = self;
+        let contacts = contacts + touched;
         let Scratch { lanes, steady_force, instructions, .. } = scratch;
         match substep.helpers {
             Some((pool, _)) => share::store(pool, lanes, particles, *instructions),

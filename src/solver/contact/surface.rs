@@ -39,6 +39,12 @@ pub struct Surface {
     pub mean_edge: f32,
     /// Length of the longest edge at rest, m.
     pub longest_edge: f32,
+    /// Points that belong to the triangles of each leaf, leaf after leaf; and where those of each end.
+    points: Vec<u32>,
+    points_end: Vec<u32>,
+    /// Leaves that share a corner with each leaf, in their order, leaf after leaf; and where those of each end.
+    beside: Vec<u32>,
+    beside_end: Vec<u32>,
     /// Number of leaves, a power of two. Node 1 is the root, and nodes 2 k and 2 k + 1 are within node k.
     leaves: usize,
 }
@@ -60,12 +66,57 @@ impl Surface {
             Owned { corners, edges }
         };
         let owned = triangles.iter().map(own).collect();
-        let mut surface = Self { triangles, owned, leaves, mean_edge: 0.0, longest_edge: 0.0 };
+        let mut surface = Self { triangles, owned, leaves, ..Self::default() };
+        surface.find_neighbours(rest.len());
         let lengths = || surface.edges().map(|[a, b]| rest[a as usize].distance(rest[b as usize]));
         let (sum, longest, count) = lengths()
             .fold((0.0, 0.0_f32, 0), |(sum, longest, count), length| (sum + length, longest.max(length), count + 1));
         (surface.mean_edge, surface.longest_edge) = (sum / count.max(1) as f32, longest);
         surface
+    }
+
+    /// Finds which leaves share a corner, and which points belong to each.
+    fn find_neighbours(&mut self, point_count: usize) {
+        let mut leaves_at: Vec<Vec<u32>> = vec![Vec::new(); point_count];
+        let leaves = self.leaves as u32..2 * self.leaves as u32;
+        for leaf in leaves.clone() {
+            for &corner in self.triangles[self.of_leaf(leaf)].as_flattened() {
+                let at = &mut leaves_at[corner as usize];
+                if at.last() != Some(&leaf) {
+                    at.push(leaf);
+                }
+            }
+        }
+        for leaf in leaves {
+            let corners = self.triangles[self.of_leaf(leaf)].as_flattened();
+            let mut beside: Vec<u32> = corners.iter().flat_map(|&i| leaves_at[i as usize].iter().copied()).collect();
+            beside.sort_unstable();
+            beside.dedup();
+            self.beside.extend(beside);
+            self.beside_end.push(self.beside.len() as u32);
+            for triangle in self.of_leaf(leaf) {
+                let owned = self.triangles[triangle].into_iter().zip(self.owned[triangle].corners);
+                self.points.extend(owned.filter(|&(_, sharp)| sharp > 0.0).map(|(corner, _)| corner));
+            }
+            self.points_end.push(self.points.len() as u32);
+        }
+    }
+
+    /// Whether two leaves share a corner.
+    fn are_beside(&self, leaf: u32, other: u32) -> bool {
+        self.part(&self.beside, &self.beside_end, leaf).binary_search(&other).is_ok()
+    }
+
+    /// The points that belong to the triangles of a leaf.
+    pub fn points_of_leaf(&self, leaf: u32) -> &[u32] {
+        self.part(&self.points, &self.points_end, leaf)
+    }
+
+    /// The part of a list that belongs to a leaf.
+    fn part<'a>(&self, list: &'a [u32], ends: &[u32], leaf: u32) -> &'a [u32] {
+        let i = leaf as usize - self.leaves;
+        let start = if i == 0 { 0 } else { ends[i - 1] as usize };
+        &list[start..ends[i] as usize]
     }
 
     /// All edges, once each.
@@ -287,7 +338,13 @@ impl Walk {
             let (first, other) = (2 * node, 2 * node + 1);
             self.left.clear();
             self.left.push((first, other));
-            self.down((surface, places), (surface, places), &mut visit);
+            // Two that share a corner and face one way are a patch too.
+            let mut visit_folded = |p: u32, q: u32| {
+                if places.facing[p as usize] & places.facing[q as usize] == 0 || !surface.are_beside(p, q) {
+                    visit(p, q);
+                }
+            };
+            self.down((surface, places), (surface, places), &mut visit_folded);
             self.folded.extend([other, first]);
         }
     }

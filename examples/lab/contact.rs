@@ -1,0 +1,142 @@
+//! Experiments on what touches: the command line of the scenes.
+
+use std::io;
+
+use bevy_drape::solver::SelfCollision;
+use clap::{Subcommand, ValueEnum};
+use serde_json::Value;
+
+use super::{
+    hang, measure,
+    mesh::MeshSource,
+    options::Options,
+    scene::{bullet, drape, fold, layers, needle, ribbon, storm, twist},
+};
+
+#[derive(Subcommand)]
+pub enum Contact {
+    /// The same cloth falls on a sphere over a ground
+    Drape {
+        #[command(flatten)]
+        options: Options,
+        /// grid, delaunay, hex, skirt, ell, sleeve, or a FILE.glb, which is scaled to 1 m
+        #[arg(long, default_value = "grid")]
+        mesh: MeshSource,
+    },
+    /// The same, where the sphere is a mesh of 20,480 triangles
+    Mesh {
+        #[command(flatten)]
+        options: Options,
+        /// Takes the triangles for a thin shell, instead of what encloses a volume
+        #[arg(long)]
+        open: bool,
+    },
+    /// A square metre stands on its edge in waves and falls in folds
+    Fold {
+        #[command(flatten)]
+        options: Options,
+    },
+    /// A ribbon of 5 cm x 2 m falls end first into a pile
+    Ribbon {
+        #[command(flatten)]
+        options: Options,
+    },
+    /// A strip of 20 cm x 1 m is turned three times at its ends, and back
+    Twist {
+        #[command(flatten)]
+        options: Options,
+    },
+    /// Three square metres fall on each other, on a sphere over a ground
+    Layers {
+        #[command(flatten)]
+        options: Options,
+    },
+    /// A flag of a square metre in gusts of 15 to 25 m/s from all sides, until it gets calm
+    Storm {
+        #[command(flatten)]
+        options: Options,
+    },
+    /// A square metre falls on something sharp
+    Needle {
+        #[command(flatten)]
+        options: Options,
+        /// A capsule of 2 mm radius, the corner of a box, or the tip of a cone
+        #[arg(long, value_enum, default_value = "needle")]
+        on: Sharp,
+    },
+    /// An impact at 30 m/s
+    Bullet {
+        #[command(flatten)]
+        options: Options,
+        /// A ball of 20 or 5 mm radius hits a square metre that is held all around, or one that flies hits a wall of 4 mm or
+        /// a ball of 10 cm radius
+        #[arg(long, value_enum, default_value = "ball")]
+        of: Impact,
+    },
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Sharp {
+    Needle,
+    Corner,
+    Cone,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Impact {
+    Ball,
+    Pellet,
+    Wall,
+    Post,
+}
+
+impl Contact {
+    pub fn measure(&self) -> io::Result<Value> {
+        let grid = &MeshSource::Grid;
+        let (name, options, mesh, scene) = match self {
+            Self::Drape { options, mesh } => {
+                let settings = options.settings(SelfCollision::Off)?;
+                let (cloth, _) = hang::free(options, &settings, mesh)?;
+                ("drape", options, mesh, drape::on_ball(&settings, [drape::raised(cloth)]))
+            }
+            Self::Mesh { options, open } => {
+                let settings = options.settings(SelfCollision::Off)?;
+                let (cloth, _) = hang::free(options, &settings, grid)?;
+                ("mesh", options, grid, drape::on_mesh(&settings, drape::raised(cloth), !open)?)
+            }
+            Self::Fold { options } => ("fold", options, grid, fold::fold(&options.settings(SelfCollision::Robust)?)?),
+            Self::Ribbon { options } => {
+                ("ribbon", options, grid, ribbon::ribbon(&options.settings(SelfCollision::Robust)?)?)
+            }
+            Self::Twist { options } => {
+                ("twist", options, grid, twist::twist(&options.settings(SelfCollision::Robust)?)?)
+            }
+            Self::Layers { options } => {
+                ("layers", options, grid, layers::layers(&options.settings(SelfCollision::Robust)?)?)
+            }
+            Self::Storm { options } => {
+                ("storm", options, grid, storm::storm(&options.settings(SelfCollision::Robust)?)?)
+            }
+            Self::Needle { options, on } => {
+                let settings = options.settings(SelfCollision::Off)?;
+                let (name, sharp) = match on {
+                    Sharp::Needle => ("needle", needle::Sharp::Needle),
+                    Sharp::Corner => ("needle: corner", needle::Sharp::Corner),
+                    Sharp::Cone => ("needle: cone", needle::Sharp::Cone),
+                };
+                (name, options, grid, needle::needle(&settings, sharp)?)
+            }
+            Self::Bullet { options, of } => {
+                let settings = options.settings(SelfCollision::Off)?;
+                let (name, scene) = match of {
+                    Impact::Ball => ("bullet: ball", bullet::ball(&settings, 0.02)?),
+                    Impact::Pellet => ("bullet: pellet", bullet::ball(&settings, 0.005)?),
+                    Impact::Wall => ("bullet: wall", bullet::wall(&settings)?),
+                    Impact::Post => ("bullet: post", bullet::post(&settings, 0.1)?),
+                };
+                (name, options, grid, scene)
+            }
+        };
+        measure::run(name, options, mesh, scene, None)
+    }
+}
