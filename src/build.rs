@@ -16,7 +16,7 @@ mod geodesic;
 pub(crate) mod grain;
 mod grouped;
 mod hinges;
-mod job;
+pub(crate) mod job;
 mod lattice;
 mod levels;
 mod order;

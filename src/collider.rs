@@ -1,14 +1,20 @@
 //! Obstacles: entities that cloth drapes over.
 
 use bevy::{
-    math::{Affine3A, Isometry3d, Vec3A, primitives::InfinitePlane3d},
+    math::{Affine3A, Isometry3d, Vec3A},
     prelude::*,
 };
 
 use crate::{
     anchor::Poses,
-    solver::{Obstacle, Shape, Solid, TaperedCapsule},
+    solver::{Obstacle, Shape, Solid},
 };
+use error::ColliderError;
+
+pub(crate) mod error;
+#[cfg(feature = "mesh_colliders")]
+pub(crate) mod mesh;
+mod solid;
 
 /// An obstacle for cloth, moved by its `Transform`.
 ///
@@ -16,9 +22,28 @@ use crate::{
 /// cloth, and one that moves once a frame comes in jolts where a frame has several steps or none. Removing the component
 /// and inserting it again lets it jump without pushing.
 ///
-/// Made from one of Bevy's primitives: `ClothCollider::from(Sphere::new(0.3))`; also from a `Cuboid`, a `Capsule3d`, a [`TaperedCapsule`], a
-/// `Cylinder`, a `Cone` and, for a ground, an `InfinitePlane3d`, behind which all is solid. The transform's scale applies; where
-/// it isn't uniform, round shapes take its largest factor.
+/// Made from one of Bevy's primitives: `ClothCollider::from(Sphere::new(0.3))`; also from a `Cuboid`, a `Capsule3d`, a
+/// [`TaperedCapsule`](crate::prelude::TaperedCapsule), a `Cylinder`, a `Cone` and, for a ground, an `InfinitePlane3d`,
+/// behind which all is solid. The transform's scale applies; where it isn't uniform, round shapes take its largest factor.
+#[cfg_attr(
+    feature = "mesh_colliders",
+    doc = "
+Anything else is made of triangles: `ClothCollider::mesh()` of those of the entity's own `Mesh3d`,
+`ClothCollider::convex_hull()` of those around it, and a [`HeightField`](crate::prelude::HeightField) of those of a
+terrain. Any scale applies to them exactly.
+
+```
+# use bevy::prelude::*;
+# use bevy_drape::prelude::*;
+fn setup(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, assets: Res<AssetServer>) {
+    commands.spawn((Mesh3d(meshes.add(Torus::new(0.2, 0.5))), ClothCollider::mesh()));
+    commands.spawn((Mesh3d(assets.load(\"rock.glb#Mesh0/Primitive0\")), ClothCollider::convex_hull()));
+    let hills = |x: f32, z: f32| 0.2 * ops::sin(x) * ops::cos(z);
+    commands.spawn(ClothCollider::from(HeightField::new(Vec2::splat(10.0), 64, 64, hills)));
+}
+```
+"
+)]
 ///
 /// A collider of no size, or with a transform that isn't finite, is left out, with one warning.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
@@ -34,11 +59,24 @@ pub struct ClothCollider {
 }
 
 /// What a collider is like.
-#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Debug, Clone, PartialEq)]
 pub enum ColliderShape {
     /// A primitive.
     Solid(Solid),
+    /// The triangles of a mesh: of this one, or of the entity's `Mesh3d`.
+    ///
+    /// Where they enclose a volume, each edge between two of them that face the same way, it is solid. Else they are a thin
+    /// surface, which cloth doesn't pass from either side. It follows a `SkinnedMesh` on the entity; the mesh of a
+    /// [`Cloth`](crate::prelude::Cloth) can't be used.
+    #[cfg(feature = "mesh_colliders")]
+    Mesh(Option<Handle<Mesh>>),
+    /// The convex hull of a mesh: of this one, or of the entity's `Mesh3d`. Faster than its triangles, and solid always.
+    #[cfg(feature = "mesh_colliders")]
+    ConvexHull(Option<Handle<Mesh>>),
+    /// A terrain.
+    #[cfg(feature = "mesh_colliders")]
+    HeightField(mesh::HeightField),
 }
 
 impl Default for ClothCollider {
@@ -54,51 +92,26 @@ impl From<ColliderShape> for ClothCollider {
     }
 }
 
-impl From<Solid> for ClothCollider {
-    fn from(solid: Solid) -> Self {
-        ColliderShape::Solid(solid).into()
+#[cfg(feature = "mesh_colliders")]
+impl ClothCollider {
+    /// The triangles of the entity's own `Mesh3d`, as they are or as its skeleton moves them.
+    pub fn mesh() -> Self {
+        ColliderShape::Mesh(None).into()
     }
-}
 
-impl From<Sphere> for ClothCollider {
-    fn from(sphere: Sphere) -> Self {
-        Solid::Sphere(sphere).into()
+    /// The triangles of another mesh than the one that is drawn: a coarse one for a character, say, on the same skeleton.
+    pub fn mesh_of(mesh: Handle<Mesh>) -> Self {
+        ColliderShape::Mesh(Some(mesh)).into()
     }
-}
 
-impl From<Cuboid> for ClothCollider {
-    fn from(cuboid: Cuboid) -> Self {
-        Solid::Cuboid(cuboid).into()
+    /// The convex hull of the entity's own `Mesh3d`.
+    pub fn convex_hull() -> Self {
+        ColliderShape::ConvexHull(None).into()
     }
-}
 
-impl From<Capsule3d> for ClothCollider {
-    fn from(capsule: Capsule3d) -> Self {
-        Solid::Capsule(capsule).into()
-    }
-}
-
-impl From<Cylinder> for ClothCollider {
-    fn from(cylinder: Cylinder) -> Self {
-        Solid::Cylinder(cylinder).into()
-    }
-}
-
-impl From<TaperedCapsule> for ClothCollider {
-    fn from(capsule: TaperedCapsule) -> Self {
-        Solid::TaperedCapsule(capsule).into()
-    }
-}
-
-impl From<Cone> for ClothCollider {
-    fn from(cone: Cone) -> Self {
-        Solid::Cone(cone).into()
-    }
-}
-
-impl From<InfinitePlane3d> for ClothCollider {
-    fn from(plane: InfinitePlane3d) -> Self {
-        Solid::HalfSpace(plane).into()
+    /// The convex hull of another mesh than the one that is drawn.
+    pub fn convex_hull_of(mesh: Handle<Mesh>) -> Self {
+        ColliderShape::ConvexHull(Some(mesh)).into()
     }
 }
 
@@ -108,68 +121,19 @@ impl ClothCollider {
         self.layers = layers;
         self
     }
-
-    /// Shape and world pose under a transform. None where nothing solid is left.
-    fn placed(&self, pose: Affine3A) -> Option<(Solid, Isometry3d)> {
-        let (scale, rotation, translation) = pose.to_scale_rotation_translation();
-        let ColliderShape::Solid(solid) = self.shape;
-        let mut solid = scaled(solid, scale.abs())?;
-        if let Solid::HalfSpace(plane) = &mut solid {
-            // A plane's normal goes by the inverse transpose: exact under any scale, mirrored or not.
-            let world = pose.matrix3.inverse().transpose() * Vec3A::from(Vec3::from(plane.normal));
-            plane.normal = Dir3::new(rotation.inverse() * Vec3::from(world)).ok()?;
-        }
-        let pose = Isometry3d::new(translation, rotation);
-        let is_finite = pose.translation.is_finite() && pose.rotation.is_finite() && self.friction.is_finite();
-        (is_finite && self.friction >= 0.0).then_some((solid, pose))
-    }
 }
 
-/// A solid under a scale of no negative factors; none where it has no size or none that is finite.
-fn scaled(solid: Solid, scale: Vec3) -> Option<Solid> {
-    let around = scale.max_element();
-    let across = scale.x.max(scale.z);
-    let all_positive = |sizes: &[f32]| sizes.iter().all(|&size| size.is_finite() && size > 0.0);
-    let (solid, has_size) = match solid {
-        Solid::Sphere(Sphere { radius }) => {
-            let radius = radius * around;
-            (Solid::Sphere(Sphere { radius }), all_positive(&[radius]))
-        }
-        Solid::Cuboid(Cuboid { half_size }) => {
-            let half_size = half_size * scale;
-            (Solid::Cuboid(Cuboid { half_size }), all_positive(&half_size.to_array()))
-        }
-        Solid::Capsule(Capsule3d { radius, half_length }) => {
-            let (radius, half_length) = (radius * across, half_length * scale.y);
-            let has_size = all_positive(&[radius]) && half_length.is_finite() && half_length >= 0.0;
-            (Solid::Capsule(Capsule3d { radius, half_length }), has_size)
-        }
-        Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length }) => {
-            let (radius_top, radius_bottom) = (radius_top * across, radius_bottom * across);
-            let half_length = half_length * scale.y;
-            let has_size = all_positive(&[radius_top, radius_bottom]) && half_length.is_finite() && half_length >= 0.0;
-            (Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length }), has_size)
-        }
-        Solid::Cone(Cone { radius, height }) => {
-            let (radius, height) = (radius * across, height * scale.y);
-            (Solid::Cone(Cone { radius, height }), all_positive(&[radius, height]))
-        }
-        Solid::Cylinder(Cylinder { radius, half_height }) => {
-            let (radius, half_height) = (radius * across, half_height * scale.y);
-            (Solid::Cylinder(Cylinder { radius, half_height }), all_positive(&[radius, half_height]))
-        }
-        Solid::HalfSpace(_) => (solid, all_positive(&[around])),
-    };
-    has_size.then_some(solid)
-}
-
-/// What is remembered of a collider from step to step.
-#[derive(Component, Clone, Copy, Debug, Default)]
+/// What is remembered of a collider from step to step. A copy of the collider has nothing to remember.
+#[derive(Component, Clone, Debug, Default)]
+#[component(clone_behavior = Ignore)]
 pub(crate) struct ColliderMemory {
     /// World pose at the end of the latest step.
     pose: Option<Isometry3d>,
-    /// The collider was left out and a warning said so.
-    warned: bool,
+    /// Why the collider was left out, of which a warning has told.
+    said: Option<ColliderError>,
+    /// What it is made of, where it is no primitive.
+    #[cfg(feature = "mesh_colliders")]
+    triangles: mesh::Triangles,
 }
 
 /// Forgets where a collider was: if it comes back, it comes out of nowhere and not from there.
@@ -177,16 +141,21 @@ pub(crate) fn on_collider_removed(removed: On<Remove, ClothCollider>, mut comman
     commands.entity(removed.entity).try_remove::<ColliderMemory>();
 }
 
-/// All obstacles of the coming step, in world space.
+/// All obstacles of the latest step, in world space: what cloth has met, whatever it came from. To look at only.
 #[derive(Resource, Debug, Default)]
-pub(crate) struct Obstacles {
+pub struct Obstacles {
     /// With their entity and layers, in the order of their entities.
-    pub list: Vec<(Entity, u32, Obstacle)>,
+    pub(crate) list: Vec<(Entity, u32, Obstacle)>,
 }
 
 impl Obstacles {
+    /// All of them, with their entity and their layers.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (Entity, u32, &Obstacle)> {
+        self.list.iter().map(|(entity, layers, obstacle)| (*entity, *layers, obstacle))
+    }
+
     /// Writes the obstacles that `mask` selects into `near`, relative to `origin`.
-    pub fn around(&self, origin: Vec3, mask: u32, near: &mut Vec<Obstacle>) {
+    pub(crate) fn around(&self, origin: Vec3, mask: u32, near: &mut Vec<Obstacle>) {
         let origin = Vec3A::from(origin);
         let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - origin, pose.rotation);
         near.clear();
@@ -207,24 +176,47 @@ pub(crate) fn gather_obstacles(
 ) {
     obstacles.list.clear();
     for (entity, collider, mut memory) in &mut colliders {
-        let pose = poses.compute_global_transform(entity);
-        let placed = pose.ok().and_then(|pose| collider.placed(pose.affine()));
-        let Some((solid, end)) = placed else {
-            if !memory.warned {
-                warn!(
-                    "collider {entity} is left out: give its shape, friction and transform finite values, and its \
-                     shape a size greater than zero"
-                );
+        let pose = || poses.compute_global_transform(entity).map(|pose| pose.affine()).ok();
+        match memory.placed(collider, pose) {
+            Ok(Some((shape, end))) => {
+                let start = memory.pose.replace(end).unwrap_or(end);
+                memory.said = None;
+                let obstacle = Obstacle { shape, start, end, friction: collider.friction, body: None };
+                obstacles.list.push((entity, collider.layers, obstacle));
             }
-            *memory = ColliderMemory { pose: None, warned: true };
-            continue;
-        };
-        let start = memory.pose.unwrap_or(end);
-        *memory = ColliderMemory { pose: Some(end), warned: false };
-        let friction = collider.friction;
-        let obstacle = Obstacle { shape: Shape::Solid(solid), start, end, friction, body: None };
-        obstacles.list.push((entity, collider.layers, obstacle));
+            Ok(None) => memory.pose = None,
+            Err(error) => {
+                memory.pose = None;
+                if memory.said.as_ref() != Some(&error) {
+                    warn!("collider {entity} is left out: {error}");
+                    memory.said = Some(error);
+                }
+            }
+        }
     }
     // Contact comes out the same whatever order the world keeps its entities in.
     obstacles.list.sort_unstable_by_key(|&(entity, ..)| entity);
+}
+
+impl ColliderMemory {
+    /// Shape and world pose of the collider at the end of the coming step. None while its shape is waited for.
+    fn placed(
+        &self,
+        collider: &ClothCollider,
+        pose: impl Fn() -> Option<Affine3A>,
+    ) -> Result<Option<(Shape, Isometry3d)>, ColliderError> {
+        let placed = match &collider.shape {
+            ColliderShape::Solid(solid) => {
+                let (solid, pose) = solid::placed(*solid, pose().ok_or(ColliderError::NoSize)?)?;
+                Some((Shape::Solid(solid), pose))
+            }
+            #[cfg(feature = "mesh_colliders")]
+            _ => self.triangles.placed()?,
+        };
+        let is_finite = |pose: &Isometry3d| pose.translation.is_finite() && pose.rotation.is_finite();
+        let is_sound = placed.as_ref().is_none_or(|(_, pose)| is_finite(pose))
+            && collider.friction.is_finite()
+            && collider.friction >= 0.0;
+        if is_sound { Ok(placed) } else { Err(ColliderError::NoSize) }
+    }
 }

@@ -34,6 +34,7 @@ mod shape;
 mod springs;
 mod surroundings;
 mod view;
+mod wires;
 
 pub use diagnostics::ClothDiagnosticsPlugin;
 pub use view::{ClothDebugConfig, ClothDebugView};
@@ -121,13 +122,14 @@ fn draw_cloths(
     obstacles: Res<Obstacles>,
     winds: Res<Winds>,
     mut places: Local<Vec<Vec3>>,
+    mut wires: Local<wires::Wires>,
 ) {
     if !gizmos.config.enabled {
         return;
     }
     let lines: &mut Lines = &mut gizmos;
     if config.colliders {
-        surroundings::draw_colliders(lines, &obstacles);
+        surroundings::draw_colliders(lines, &obstacles, &mut wires);
     }
     for (state, ClothMesh { shape: drawn, .. }, transform, own) in &cloths {
         let view = own.map_or(config.view, |own| own.or(&config.view));

@@ -65,7 +65,8 @@ impl From<ClothGrid> for Mesh {
     }
 }
 
-fn indices(grid: &ClothGrid) -> Vec<u32> {
+/// Corners of all triangles of a grid.
+pub(crate) fn indices(grid: &ClothGrid) -> Vec<u32> {
     let mut indices = Vec::new();
     for row in 0..grid.particles.y - 1 {
         for column in 0..grid.particles.x - 1 {

@@ -67,10 +67,13 @@ pub mod panel;
 #[cfg(feature = "picking")]
 pub mod picking;
 
+pub use collider::Obstacles;
 pub use error::ClothError;
 
 /// What a game needs.
 pub mod prelude {
+    #[cfg(feature = "mesh_colliders")]
+    pub use crate::collider::mesh::HeightField;
     #[cfg(feature = "picking")]
     pub use crate::picking::{ClothPickingPlugin, ClothPickingSettings, PointerGrabs};
     pub use crate::{

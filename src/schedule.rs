@@ -147,6 +147,11 @@ impl Plugin for ClothPlugin {
             .add_observer(build::system::on_cloth_removed)
             .add_observer(collider::on_collider_removed)
             .add_observer(settings::on_springs_removed);
+        #[cfg(feature = "mesh_colliders")]
+        app.init_resource::<collider::mesh::PreparedMeshes>().add_systems(
+            self.schedule,
+            collider::mesh::prepare_meshes.in_set(ClothSystems::Gather).before(collider::gather_obstacles),
+        );
     }
 
     /// Does what needs a plugin that has come later, and says what is missing.

@@ -4,7 +4,7 @@ use bevy::tasks::{AsyncComputeTaskPool, Task, TaskPool, futures::check_ready};
 
 /// Jobs by what they are to come to. All who ask for the same wait for the same one.
 #[derive(Debug)]
-pub(super) struct Jobs<K, T>(Vec<Job<K, T>>);
+pub(crate) struct Jobs<K, T>(Vec<Job<K, T>>);
 
 #[derive(Debug)]
 struct Job<K, T> {

@@ -5,10 +5,10 @@ use bevy::{
     prelude::*,
 };
 
-use super::{ClothDebugConfig, Lines, Shown, palette};
+use super::{ClothDebugConfig, Lines, Shown, palette, wires::Wires};
 use crate::{
     collider::Obstacles,
-    solver::{Obstacle, Shape, Solid, TaperedCapsule, force::wind::add_air_velocity},
+    solver::{MeshShape, Obstacle, Shape, Solid, TaperedCapsule, force::wind::add_air_velocity},
     wind::Winds,
 };
 
@@ -16,34 +16,46 @@ use crate::{
 const PLANE: (u32, f32) = (20, 0.5);
 
 /// Draws obstacles as the latest step saw them at its end.
-pub(super) fn draw_colliders(lines: &mut Lines, obstacles: &Obstacles) {
+pub(super) fn draw_colliders(lines: &mut Lines, obstacles: &Obstacles, wires: &mut Wires) {
     for (_, _, Obstacle { shape, end, .. }) in &obstacles.list {
-        let (Shape::Solid(solid), pose) = (shape, *end) else { continue };
-        match *solid {
-            Solid::Sphere(sphere) => drop(lines.primitive_3d(&sphere, pose, palette::COLLIDER)),
-            Solid::Cuboid(cuboid) => lines.primitive_3d(&cuboid, pose, palette::COLLIDER),
-            Solid::Capsule(capsule) => {
-                lines.primitive_3d(&capsule, pose, palette::COLLIDER).resolution(12);
-            }
-            Solid::Cylinder(cylinder) => {
-                lines.primitive_3d(&cylinder, pose, palette::COLLIDER).resolution(24);
-            }
-            Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length }) => {
-                for (height, radius) in [(half_length, radius_top), (-half_length, radius_bottom)] {
-                    lines.sphere(pose * Isometry3d::from_translation(Vec3::Y * height), radius, palette::COLLIDER);
+        match shape {
+            Shape::Solid(solid) => draw_solid(lines, *solid, *end),
+            Shape::Mesh(MeshShape { mesh, deformed }) => {
+                let points = deformed.as_ref().map_or(mesh.points.as_slice(), |[_, points]| points);
+                for ends in wires.of(mesh) {
+                    let [from, to] = ends.map(|i| Vec3::from(*end * points[i as usize]));
+                    lines.line(from, to, palette::COLLIDER);
                 }
-                let side = ConicalFrustum { radius_top, radius_bottom, height: 2.0 * half_length };
-                lines.primitive_3d(&side, pose, palette::COLLIDER);
             }
-            Solid::Cone(cone) => {
-                lines.primitive_3d(&cone, pose, palette::COLLIDER);
+        }
+    }
+}
+
+fn draw_solid(lines: &mut Lines, solid: Solid, pose: Isometry3d) {
+    match solid {
+        Solid::Sphere(sphere) => drop(lines.primitive_3d(&sphere, pose, palette::COLLIDER)),
+        Solid::Cuboid(cuboid) => lines.primitive_3d(&cuboid, pose, palette::COLLIDER),
+        Solid::Capsule(capsule) => {
+            lines.primitive_3d(&capsule, pose, palette::COLLIDER).resolution(12);
+        }
+        Solid::Cylinder(cylinder) => {
+            lines.primitive_3d(&cylinder, pose, palette::COLLIDER).resolution(24);
+        }
+        Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length }) => {
+            for (height, radius) in [(half_length, radius_top), (-half_length, radius_bottom)] {
+                lines.sphere(pose * Isometry3d::from_translation(Vec3::Y * height), radius, palette::COLLIDER);
             }
-            Solid::HalfSpace(plane) => {
-                let (cells, spacing) = PLANE;
-                let plane = Plane3d { normal: plane.normal, ..default() };
-                let drawn = lines.primitive_3d(&plane, pose, palette::COLLIDER);
-                drawn.cell_count(UVec2::splat(cells)).spacing(Vec2::splat(spacing));
-            }
+            let side = ConicalFrustum { radius_top, radius_bottom, height: 2.0 * half_length };
+            lines.primitive_3d(&side, pose, palette::COLLIDER);
+        }
+        Solid::Cone(cone) => {
+            lines.primitive_3d(&cone, pose, palette::COLLIDER);
+        }
+        Solid::HalfSpace(plane) => {
+            let (cells, spacing) = PLANE;
+            let plane = Plane3d { normal: plane.normal, ..default() };
+            let drawn = lines.primitive_3d(&plane, pose, palette::COLLIDER);
+            drawn.cell_count(UVec2::splat(cells)).spacing(Vec2::splat(spacing));
         }
     }
 }

@@ -101,7 +101,8 @@ pub struct ClothDebugConfig {
     /// What is drawn of every cloth. Its fields are also this one's: `config.pins = true`.
     #[deref]
     pub view: ClothDebugView,
-    /// Colliders where and as large as the latest step saw them; of half-spaces a part of their plane.
+    /// Colliders where and as large as the latest step saw them; of half-spaces a part of their plane, of meshes
+    /// with very many edges the sharp ones and some of the others.
     pub colliders: bool,
     /// The wind in the box of each cloth, as arrows at the middle of its cells: what cloth there would feel.
     pub wind: bool,

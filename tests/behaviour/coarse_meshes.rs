@@ -1,64 +1,16 @@
 //! A mesh that is too coarse to show its fabric's folds is told of once.
 
-use std::{
-    io::{self, Write},
-    sync::{Arc, Mutex},
-};
-
-use bevy::{
-    ecs::schedule::{ScheduleLabel, SingleThreadedExecutor},
-    log::{tracing::subscriber, tracing_subscriber::fmt},
-    prelude::*,
-};
+use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
-use crate::common::*;
+use crate::{common::*, quiet::Quiet};
 
 /// A square metre with cells of 50 mm: fine enough for leather, which needs 52 mm, and for nothing softer.
 const COARSE: ClothGrid = ClothGrid { size: Vec2::ONE, particles: UVec2::splat(21), lying: true };
 /// Cells of 20 mm: fine enough for silk, which needs 22.6 mm.
 const FINE: ClothGrid = ClothGrid { size: Vec2::ONE, particles: UVec2::splat(51), lying: true };
 
-/// What is logged on this thread.
-#[derive(Clone, Default)]
-struct Log(Arc<Mutex<Vec<u8>>>);
-
-impl Write for Log {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.lock().expect("no test fails while it writes").write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// An app that works on one thread, and what it has warned of.
-struct Quiet {
-    app: App,
-    log: Log,
-}
-
 impl Quiet {
-    fn new() -> Self {
-        let mut app = headless_with(ClothPlugin::new(Update).single_threaded());
-        for schedule in [PreUpdate.intern(), Update.intern()] {
-            app.edit_schedule(schedule, |schedule| {
-                schedule.set_executor(SingleThreadedExecutor::new());
-            });
-        }
-        Self { app, log: Log::default() }
-    }
-
-    /// The warnings of so many frames.
-    fn run(&mut self, frames: usize) -> Vec<String> {
-        let log = self.log.clone();
-        let listener = fmt().with_ansi(false).with_writer(move || log.clone()).finish();
-        subscriber::with_default(listener, || run(&mut self.app, frames));
-        let said = core::mem::take(&mut *self.log.0.lock().expect("no test fails while it writes"));
-        String::from_utf8(said).expect("text").lines().filter(|line| line.contains("WARN")).map(Into::into).collect()
-    }
-
     /// The warnings while a cloth becomes ready.
     fn spawn(&mut self, grid: ClothGrid, more: impl Bundle) -> (Entity, Vec<String>) {
         let cloth = spawn_cloth(&mut self.app, grid, more);

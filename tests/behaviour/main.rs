@@ -1,8 +1,11 @@
 //! What the plugin does in an app, without a window: one module per behaviour.
 
 mod common;
+mod quiet;
 
 mod any_mesh;
+#[cfg(feature = "mesh_colliders")]
+mod bad_colliders;
 mod bad_meshes;
 mod bad_pins;
 mod bad_surroundings;
@@ -26,6 +29,8 @@ mod grabs;
 mod gravity;
 mod large_meshes;
 mod late_mesh;
+#[cfg(feature = "mesh_colliders")]
+mod mesh_colliders;
 mod missing_plugins;
 mod obstacles;
 mod pin_selectors;
@@ -38,5 +43,7 @@ mod recovery;
 mod reflection;
 mod removal;
 mod schedules;
+#[cfg(feature = "mesh_colliders")]
+mod skinned_colliders;
 mod stretch;
 mod winds;

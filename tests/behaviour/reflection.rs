@@ -66,6 +66,34 @@ fn reflection_changes_a_running_cloth() {
     assert!(place(&app, cloth, 0).y > 1.0);
 }
 
+#[cfg(feature = "mesh_colliders")]
+#[test]
+fn a_collider_of_any_shape_goes_through_reflection() {
+    use bevy::reflect::FromReflect;
+
+    let mut app = headless();
+    let registry = app.world().resource::<AppTypeRegistry>().clone();
+    assert!(has::<ReflectDefault>(&registry.read(), TypeId::of::<HeightField>()));
+    let mesh = add_mesh(&mut app, Cuboid::default());
+    let colliders = [
+        ClothCollider::mesh(),
+        ClothCollider::mesh_of(mesh.clone()),
+        ClothCollider::convex_hull(),
+        ClothCollider::convex_hull_of(mesh),
+        HeightField::default().into(),
+    ];
+    for collider in colliders {
+        assert_eq!(ClothCollider::from_reflect(collider.to_dynamic().as_ref()), Some(collider.clone()));
+        assert!(collider.reflect_partial_eq(collider.reflect_clone().unwrap().as_ref()).unwrap());
+    }
+    let terrain = app.world_mut().spawn(ClothCollider::from(HeightField::default())).id();
+    let component = registry.read().get_type_data::<ReflectComponent>(TypeId::of::<ClothCollider>()).unwrap().clone();
+    let mut reflected = component.reflect_mut(app.world_mut().entity_mut(terrain)).unwrap();
+    *reflected.path_mut::<f32>("shape.0.heights[3]").unwrap() = 2.0;
+    let ColliderShape::HeightField(field) = &get::<ClothCollider>(&app, terrain).shape else { panic!("a terrain") };
+    assert_eq!(field.heights, [0.0, 0.0, 0.0, 2.0]);
+}
+
 #[test]
 fn pins_to_entities_are_mapped() {
     let mut world = World::new();

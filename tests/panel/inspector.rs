@@ -59,6 +59,10 @@ fn every_component_shows_its_fields() {
     assert_shown(Pins::edge(ClothEdge::Top), "Pins", &["groups"]);
     assert_shown(Wind::default(), "Wind", &["velocity", "region", "gusts", "eddy_size"]);
     assert_shown(ClothCollider::from(Sphere::new(0.5)), "ClothCollider", &["shape", "layers"]);
+    #[cfg(feature = "mesh_colliders")]
+    for collider in [ClothCollider::mesh(), ClothCollider::convex_hull(), HeightField::default().into()] {
+        assert_shown(collider, "ClothCollider", &["shape", "layers"]);
+    }
     assert_shown(Cloth::default(), "ClothStatus", &[]);
     assert_shown(FabricHandle::default(), "FabricHandle", &["detached"]);
 }

@@ -64,6 +64,25 @@ fn a_half_space_shows_its_plane_and_the_way_out() {
     assert_close(lines[0].from, pose.translation, 1e-5);
 }
 
+#[cfg(feature = "mesh_colliders")]
+#[test]
+fn a_mesh_shows_each_of_its_edges() {
+    let mut app = inside();
+    config(&mut app).colliders = true;
+    let pose = Transform::from_xyz(3.0, -2.0, 1.0).with_rotation(Quat::from_rotation_y(0.4));
+    let mesh = add_mesh(&mut app, Cuboid::new(0.6, 1.0, 0.4));
+    let block = app.world_mut().spawn((Mesh3d(mesh), ClothCollider::mesh(), pose.with_scale(Vec3::splat(2.0)))).id();
+    run(&mut app, 1);
+    assert_eq!(lines(&app).len(), 12 + 6, "twelve sides and six diagonals");
+    for place in lines(&app).iter().flat_map(|line| [line.from, line.to]) {
+        let local = pose.to_matrix().inverse().transform_point3(place);
+        assert_close(local.abs(), Vec3::new(0.6, 1.0, 0.4), 1e-5);
+    }
+    app.world_mut().despawn(block);
+    run(&mut app, 1);
+    assert_eq!(lines(&app), []);
+}
+
 #[test]
 fn colliders_are_shown_as_the_latest_step_saw_them() {
     let mut app = inside();

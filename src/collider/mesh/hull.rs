@@ -1,0 +1,121 @@
+//! Convex hulls. Knows neither meshes nor entities.
+
+use bevy::{math::Mat3A, prelude::*};
+use parry3d::transformation::try_convex_hull;
+
+use super::triangles::{Made, THINNEST, clean, numbers, numbers_of, places, thickness};
+use crate::{build::weld::weld, collider::error::ColliderError};
+
+/// By how much points are moved to find their hull where it isn't found else, as a share of their size.
+const UNEVEN: f32 = 1e-4;
+
+/// The convex hull of the corners of `triangles` between `points` (m), after `scale`.
+pub(crate) fn hull_of(points: &[Vec3], triangles: &[[u32; 3]], scale: Mat3A) -> Result<Made, ColliderError> {
+    let welded = weld(points, triangles);
+    let places = places(points, &welded.vertex_of_particle, scale)?;
+    Ok(hull(&places)?.made_of(&welded.vertex_of_particle))
+}
+
+/// The convex hull of `points`, m.
+pub(crate) fn hull(points: &[Vec3]) -> Result<Made, ColliderError> {
+    let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
+    let size = points.iter().copied().reduce(Vec3::max).unwrap_or_default() - low;
+    if !size.is_finite() {
+        return Err(ColliderError::NoSize);
+    }
+    if points.len() < 4 || size.min_element() <= 0.0 {
+        return Err(ColliderError::Flat);
+    }
+    // A hull stays one under any scale, and is found best in a cube.
+    let within: Vec<Vec3> = points.iter().map(|&point| (point - low) / size).collect();
+    let found = hull_in_cube(points, &within);
+    if !matches!(found, Err(ColliderError::NoHull { .. })) {
+        return found;
+    }
+    // Many points in one plane can lead the search astray. Where they are a little uneven, they don't.
+    let uneven = |(i, &point): (usize, &Vec3)| point + (i as f32 * Vec3::new(0.8192, 0.6710, 0.5497)).fract() * UNEVEN;
+    hull_in_cube(points, &within.iter().enumerate().map(uneven).collect::<Vec<_>>())
+}
+
+/// The convex hull of `points` that are here or about here `within` a unit cube.
+fn hull_in_cube(points: &[Vec3], within: &[Vec3]) -> Result<Made, ColliderError> {
+    let no_hull = |reason: String| ColliderError::NoHull { reason };
+    let (corners, triangles) = try_convex_hull(within).map_err(|error| no_hull(error.to_string()))?;
+    let origin = numbers_of(&corners, &numbers(within))?;
+    let corners: Vec<Vec3> = origin.iter().map(|&i| points[i as usize]).collect();
+    // What is flat comes as two sheets.
+    if thickness(&corners, &triangles).abs() <= THINNEST {
+        return Err(ColliderError::Flat);
+    }
+    let made = clean(corners, triangles)?;
+    if !made.mesh.is_closed {
+        return Err(no_hull("it has gaps".into()));
+    }
+    Ok(made.made_of(&origin))
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f32::consts::FRAC_PI_8;
+
+    use bevy::math::Vec3A;
+
+    use super::{
+        super::triangles::tests::{refusal, volume},
+        *,
+    };
+
+    #[test]
+    fn points_in_a_plane_have_no_hull() {
+        let tilted = |a: f32, b: f32| Vec3::new(a, b, 0.3 * a - 0.7 * b);
+        let plane: Vec<Vec3> = (0..40).map(|i| tilted((i % 7) as f32, (i / 7) as f32)).collect();
+        assert_eq!(refusal(hull(&plane)), ColliderError::Flat);
+        let line: Vec<Vec3> = (0..40).map(|i| Vec3::new(1.0, 2.0, 3.0) * i as f32).collect();
+        let level: Vec<Vec3> = plane.iter().map(|point| point.with_y(2.0)).collect();
+        for points in [&line[..], &line[..1], &line[..2], &level, &[]] {
+            assert_eq!(refusal(hull(points)), ColliderError::Flat, "{points:?}");
+        }
+    }
+
+    #[test]
+    fn a_hull_holds_all_points_and_bulges_everywhere() {
+        let mut random = fastrand::Rng::with_seed(7);
+        let mut number = || random.f32() * 2.0 - 1.0;
+        let mut found = 0;
+        for round in 0..300 {
+            let size = Vec3::new(1.0, 10.0_f32.powi(round % 5 - 3), 1.0);
+            // On a lattice, and on the ends of a cylinder, many lie in one plane.
+            let snap = [1e6, 4.0, 2.0][round as usize % 3];
+            let mut point = || {
+                let [x, y, z] = [number(), number(), number()];
+                let angle = (8.0 * x).round() * FRAC_PI_8;
+                let place = if round % 2 == 0 {
+                    Vec3::new(x, y, z)
+                } else {
+                    Vec3::new(ops::cos(angle), y.signum(), ops::sin(angle))
+                };
+                (place * snap).round() / snap * size + 3.0
+            };
+            let points: Vec<Vec3> = (0..8 + round % 60).map(|_| point()).collect();
+            let Ok(Made { mesh, .. }) = hull(&points) else { continue };
+            found += 1;
+            assert!(mesh.is_closed && volume(&mesh) > 0.0);
+            for triangle in mesh.triangles() {
+                let [a, b, c] = triangle.map(|i| mesh.points[i as usize] / Vec3A::from(size));
+                let (normal, area) = (b - a).cross(c - a).normalize_and_length();
+                // A splinter along an edge faces anywhere.
+                if area > 0.02 {
+                    let out = points.iter().map(|&point| normal.dot(Vec3A::from(point / size) - a)).fold(0.0, f32::max);
+                    assert!(out < 1e-2, "round {round}: {out}");
+                }
+            }
+        }
+        assert!(found > 290, "{found}");
+    }
+
+    #[test]
+    fn points_that_are_not_finite_have_no_hull() {
+        assert_eq!(refusal(hull(&[Vec3::NAN; 8])), ColliderError::NoSize);
+        assert_eq!(refusal(hull(&[Vec3::ZERO, Vec3::ONE, Vec3::X, Vec3::INFINITY])), ColliderError::NoSize);
+    }
+}
