@@ -76,13 +76,14 @@ fn step_cloth(
 ) {
     let Some(material) = state.material else { return };
     state.is_taken_back = false;
+    state.work.pushes.clear();
     // Paused: nothing is new to draw, and what pushes the cloth is kept until time goes on.
     if time.delta_secs() <= 0.0 {
         return;
     }
     let Cloth { solver, max_substeps, gravity_scale, max_velocity, .. } = state.settings;
-    let Work { anchors, grabs, obstacles: near, winds: felt } = &mut state.work;
-    obstacles.around(state.origin, state.settings.collision_mask, near);
+    let Work { anchors, grabs, obstacles: near, owners, pushes, winds: felt } = &mut state.work;
+    obstacles.around(state.origin, state.settings.collision_mask, near, owners);
     winds.around(state.origin, felt);
     let ctx = StepContext {
         dt: time.delta_secs(),
@@ -110,6 +111,8 @@ fn step_cloth(
     let begun = Instant::now();
     state.report = Some(solver::step(&mut state.particles, &state.topology, &ctx, scratch));
     state.step_time = begun.elapsed();
+    let given = owners.iter().zip(&*near).zip(scratch.pushes()).filter(|((_, obstacle), _)| obstacle.body.is_some());
+    pushes.extend(given.map(|((&owner, _), &push)| (owner, push)));
     state.particles.force.fill(Vec3A::ZERO);
     let was_still = core::mem::replace(&mut state.is_still, state.particles.position == state.step_start);
     // The first step that moves nothing counts: what is drawn still comes to rest with it.
@@ -120,6 +123,7 @@ fn step_cloth(
     if state.is_taken_back {
         state.particles.position.clone_from(&state.step_start);
         state.particles.velocity.fill(Vec3A::ZERO);
+        state.work.pushes.clear();
     }
 }
 

@@ -15,7 +15,7 @@ use crate::{
     draw::{carrier::Carrier, shading::particle_normals},
     grab::Grabs,
     solver::{
-        self, Anchor, Effort, Energy, Grab, Material, Obstacle, Particles, StepReport, Strain, Tether, Tethers,
+        self, Anchor, Effort, Energy, Grab, Material, Obstacle, Particles, Push, StepReport, Strain, Tether, Tethers,
         Topology, Weave, WindSource,
     },
 };
@@ -106,6 +106,10 @@ pub(crate) struct Work {
     pub anchors: Vec<Anchor>,
     pub grabs: Vec<Grab>,
     pub obstacles: Vec<Obstacle>,
+    /// Whose obstacle each is.
+    pub owners: Vec<Entity>,
+    /// What the bodies among them have been given.
+    pub pushes: Vec<(Entity, Push)>,
     pub winds: Vec<WindSource>,
 }
 

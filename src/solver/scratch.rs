@@ -3,7 +3,7 @@
 use bevy::math::Vec3A;
 
 use super::{
-    Instructions, Lanes,
+    Instructions, Lanes, Push,
     constraint::{
         beads::Beads,
         bend::{Bending, Ways},
@@ -49,4 +49,14 @@ pub struct Scratch {
     pub(super) bench: Bench,
     /// What each thread needs of its own that shares a large cloth.
     pub(super) benches: Vec<Bench>,
+    /// What the bodies among the obstacles were given.
+    pub(super) pushes: Vec<Push>,
+}
+
+impl Scratch {
+    /// What the latest step has given to the body of each obstacle, in the order of
+    /// [`StepContext::obstacles`](super::StepContext::obstacles).
+    pub fn pushes(&self) -> &[Push] {
+        &self.pushes
+    }
 }

@@ -1,0 +1,40 @@
+//! Moves Avian's bodies as cloth has pushed them.
+
+use avian3d::{
+    dynamics::rigid_body::RigidBodyQuery,
+    parry::shape::SharedShape,
+    prelude::{ColliderOf, RigidBodyDisabled},
+};
+use bevy::prelude::*;
+
+use super::gather::pose;
+use crate::engine::{Bridge, Moved, Pushes};
+
+/// Gives the bodies what cloth has lost to them in the latest step. That wakes those that sleep.
+pub(super) fn push_bodies(
+    pushes: Res<Pushes>,
+    colliders: Query<&ColliderOf>,
+    mut bodies: Query<(RigidBodyQuery, Option<&mut Transform>), Without<RigidBodyDisabled>>,
+    time: Res<Time>,
+    mut bridge: ResMut<Bridge<SharedShape>>,
+) {
+    for given in &pushes.list {
+        let entity = colliders.get(given.to).map_or(given.to, |of| of.body);
+        let Ok((mut body, transform)) = bodies.get_mut(entity) else { continue };
+        if !body.rb.is_dynamic() {
+            continue;
+        }
+        let velocity = body.effective_inverse_mass() * Vec3::from(given.push.linear);
+        let turn = Mat3::from(body.effective_global_angular_inertia().inverse()) * Vec3::from(given.push.angular);
+        let from = pose(&body.position, &body.rotation);
+        let moved = Moved::new(from, body.center_of_mass.0, velocity, turn, time.delta_secs());
+        body.position.0 = moved.pose.translation.into();
+        body.rotation.0 = moved.pose.rotation;
+        body.linear_velocity.0 += moved.velocity;
+        body.angular_velocity.0 += moved.angular_velocity;
+        if let Some(mut transform) = transform {
+            moved.carry(&mut transform, from);
+        }
+        bridge.bodies.moved(entity, moved.pose, body.linear_velocity.0);
+    }
+}
