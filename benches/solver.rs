@@ -63,6 +63,8 @@ fn hang(criterion: &mut Criterion) {
             margin: 0.005,
             max_depenetration_velocity: 1.0,
             self_collision: SelfCollision::Off,
+            collision_layers: 1,
+            collision_mask: 1,
             self_distance: 0.004,
             self_friction: 0.3,
             obstacles: &[],

@@ -87,8 +87,11 @@ pub struct Cloth {
     pub self_distance: f32,
     /// Coulomb friction of cloth on cloth, no unit, 0 or more. 0.1 for silk, 0.4 for wool.
     pub self_friction: f32,
-    /// Which obstacles the cloth meets: those whose [`ClothCollider::layers`](crate::prelude::ClothCollider::layers)
-    /// have a bit in common with it.
+    /// Layers that the cloth is in for other cloths, one a bit. Two meet where each is in the other's mask.
+    pub collision_layers: u32,
+    /// Which obstacles and cloths the cloth meets: those whose
+    /// [`ClothCollider::layers`](crate::prelude::ClothCollider::layers), or `collision_layers`, have a bit in common with
+    /// it.
     pub collision_mask: u32,
 }
 
@@ -109,6 +112,7 @@ impl Default for Cloth {
             self_collision: SelfCollision::Off,
             self_distance: 0.004,
             self_friction: 0.3,
+            collision_layers: 1,
             collision_mask: u32::MAX,
         }
     }

@@ -10,12 +10,14 @@ use bevy::{
     tasks::TaskPool,
 };
 
+mod meeting;
+
 use crate::{
-    cloth::{Cloth, ClothGravity, ClothReset, ClothSolver, ClothStatus, ResetCause},
+    cloth::{ClothGravity, ClothReset, ClothSolver, ClothStatus, ResetCause},
     collider::Obstacles,
     parallel,
     schedule::ClothRun,
-    solver::{self, Scratch, StepContext},
+    solver::{self, Member, Particles, Push, Scratch, StepContext, StepReport, Topology},
     state::{ClothState, Work},
     wind::Winds,
 };
@@ -26,11 +28,12 @@ pub(crate) struct Workshop(Mutex<Vec<Scratch>>);
 
 impl Workshop {
     /// Lends working memory. The latest that was handed back comes first: it may still be in the processor's cache.
-    fn with_scratch(&self, work: impl FnOnce(&mut Scratch)) {
-        let idle = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut scratch = idle().pop().unwrap_or_default();
-        work(&mut scratch);
-        idle().push(scratch);
+    fn take(&self) -> Scratch {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
+    }
+
+    fn give_back(&self, scratch: Scratch) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
     }
 }
 
@@ -42,77 +45,138 @@ pub(crate) struct Surroundings<'w> {
     winds: Res<'w, Winds>,
 }
 
-/// Steps all cloths, several at a time: each reads what is shared and writes only itself, so the order doesn't matter.
+/// Steps all cloths, several at a time: each reads what is shared and writes only itself, so the order doesn't matter. Those
+/// that may touch each other are stepped together.
 pub(crate) fn step_cloths(
-    mut cloths: Query<(&ClothStatus, &mut ClothState)>,
+    mut cloths: Query<(Entity, &ClothStatus, &mut ClothState)>,
     run: Res<ClothRun>,
     time: Res<Time>,
-    Surroundings { gravity, obstacles, winds }: Surroundings,
+    surroundings: Surroundings,
     workshop: Local<Workshop>,
     _main_thread: NonSendMarker,
 ) {
-    let gravity = if gravity.0.is_finite() {
-        gravity.0
+    let gravity = surroundings.gravity.0;
+    let gravity = if gravity.is_finite() {
+        gravity
     } else {
         warn_once!("ClothGravity isn't finite: cloth has no gravity until it is; set it to a finite acceleration");
         Vec3::ZERO
     };
+    let ready = cloths.iter_mut().filter(|(_, status, _)| **status == ClothStatus::Ready);
+    let ready: Vec<(Entity, Mut<ClothState>)> = ready.map(|(entity, _, state)| (entity, state)).collect();
     let pool = parallel::pool(run.parallel);
-    parallel::for_each(&mut cloths, run.parallel, |(status, mut state)| {
-        if *status == ClothStatus::Ready {
-            workshop.with_scratch(|scratch| step_cloth(&mut state, &time, gravity, &obstacles, &winds, pool, scratch));
-        }
+    parallel::for_each(meeting::group(ready, time.delta_secs()), run.parallel, |mut group| {
+        let mut states: Vec<&mut ClothState> = group.iter_mut().map(|(_, state)| &mut **state).collect();
+        step_group(&mut states, &time, gravity, &surroundings, pool, &workshop);
     });
 }
 
-fn step_cloth(
-    state: &mut ClothState,
+/// Steps cloths that may touch each other.
+fn step_group(
+    states: &mut [&mut ClothState],
     time: &Time,
     gravity: Vec3,
-    obstacles: &Obstacles,
-    winds: &Winds,
+    surroundings: &Surroundings,
     pool: Option<&TaskPool>,
-    scratch: &mut Scratch,
+    workshop: &Workshop,
 ) {
-    let Some(material) = state.material else { return };
-    state.is_taken_back = false;
-    state.work.pushes.clear();
+    for state in &mut *states {
+        state.is_taken_back = false;
+        state.work.pushes.clear();
+    }
     // Paused: nothing is new to draw, and what pushes the cloth is kept until time goes on.
     if time.delta_secs() <= 0.0 {
         return;
     }
-    let Cloth { solver, max_substeps, gravity_scale, max_velocity, .. } = state.settings;
-    let Work { anchors, grabs, obstacles: near, owners, pushes, winds: felt } = &mut state.work;
-    obstacles.around(state.origin, state.settings.collision_mask, near, owners);
-    winds.around(state.origin, felt);
-    let ctx = StepContext {
-        dt: time.delta_secs(),
-        method: solver.into(),
-        effort: &state.effort,
-        max_substeps,
-        material,
-        gravity: (gravity * gravity_scale).into(),
-        anchors,
-        grabs,
-        max_velocity,
-        tethers: state.settings.tether_slack.map(|_| &state.tethers),
-        tether_slack: state.settings.tether_slack.unwrap_or_default(),
-        margin: state.settings.collision_margin,
-        max_depenetration_velocity: state.settings.max_depenetration_velocity,
-        self_collision: state.settings.self_collision,
-        self_distance: state.settings.self_distance,
-        self_friction: state.settings.self_friction,
-        obstacles: near,
-        fluid_density: state.settings.fluid_density,
-        winds: felt,
-        pool,
-    };
-    state.step_start.clone_from(&state.particles.position);
+    let mut scratches: Vec<Scratch> = states.iter().map(|_| workshop.take()).collect();
     let begun = Instant::now();
-    state.report = Some(solver::step(&mut state.particles, &state.topology, &ctx, scratch));
-    state.step_time = begun.elapsed();
-    let given = owners.iter().zip(&*near).zip(scratch.pushes()).filter(|((_, obstacle), _)| obstacle.body.is_some());
-    pushes.extend(given.map(|((&owner, _), &push)| (owner, push)));
+    let mut parts: Vec<Parts> = states
+        .iter_mut()
+        .filter_map(|state| Parts::of(state, time.delta_secs(), gravity, surroundings, pool))
+        .collect();
+    let first = parts.first().map_or(Vec3::ZERO, |parts| parts.origin);
+    let mut members: Vec<Member> = parts
+        .iter_mut()
+        .zip(&mut scratches)
+        .map(|(Parts { particles, topology, ctx, origin }, scratch)| {
+            let offset = Vec3A::from(*origin - first);
+            Member { particles, topology, ctx, scratch, offset, report: None }
+        })
+        .collect();
+    solver::step_together(&mut members);
+    let reports: Vec<Option<StepReport>> = members.into_iter().map(|member| member.report).collect();
+    drop(parts);
+    let taken = begun.elapsed() / states.len().max(1) as u32;
+    let stepped = states.iter_mut().filter(|state| state.material.is_some());
+    for ((state, report), scratch) in stepped.zip(reports).zip(&scratches) {
+        state.step_time = taken;
+        take_pushes(&mut state.work, scratch.pushes());
+        end_step(state, report);
+    }
+    scratches.into_iter().rev().for_each(|scratch| workshop.give_back(scratch));
+}
+
+/// Keeps what the bodies among the obstacles have been given.
+fn take_pushes(work: &mut Work, given: &[Push]) {
+    let Work { obstacles, owners, pushes, .. } = work;
+    let bodies = obstacles.iter().zip(owners).zip(given).filter(|((obstacle, _), _)| obstacle.body.is_some());
+    pushes.extend(bodies.map(|((_, &mut owner), &push)| (owner, push)));
+}
+
+/// What of a cloth goes into a step.
+struct Parts<'a> {
+    particles: &'a mut Particles,
+    topology: &'a Topology,
+    ctx: StepContext<'a>,
+    origin: Vec3,
+}
+
+impl<'a> Parts<'a> {
+    /// None where the cloth isn't made of anything yet.
+    fn of(
+        state: &'a mut ClothState,
+        dt: f32,
+        gravity: Vec3,
+        surroundings: &Surroundings,
+        pool: Option<&'a TaskPool>,
+    ) -> Option<Self> {
+        let material = state.material?;
+        state.step_start.clone_from(&state.particles.position);
+        let ClothState { particles, topology, origin, settings, effort, work, tethers, .. } = state;
+        let Work { anchors, grabs, obstacles: near, owners, winds: felt, .. } = work;
+        surroundings.obstacles.around(*origin, settings.collision_mask, near, owners);
+        surroundings.winds.around(*origin, felt);
+        let ctx = StepContext {
+            dt,
+            method: settings.solver.into(),
+            effort,
+            max_substeps: settings.max_substeps,
+            material,
+            gravity: (gravity * settings.gravity_scale).into(),
+            anchors,
+            grabs,
+            max_velocity: settings.max_velocity,
+            tethers: settings.tether_slack.map(|_| &*tethers),
+            tether_slack: settings.tether_slack.unwrap_or_default(),
+            margin: settings.collision_margin,
+            max_depenetration_velocity: settings.max_depenetration_velocity,
+            self_collision: settings.self_collision,
+            collision_layers: settings.collision_layers,
+            collision_mask: settings.collision_mask,
+            self_distance: settings.self_distance,
+            self_friction: settings.self_friction,
+            obstacles: near,
+            fluid_density: settings.fluid_density,
+            winds: felt,
+            pool,
+        };
+        Some(Self { particles, topology, ctx, origin: *origin })
+    }
+}
+
+/// Takes note of what a step has done to a cloth.
+fn end_step(state: &mut ClothState, report: Option<StepReport>) {
+    state.report = report;
     state.particles.force.fill(Vec3A::ZERO);
     let was_still = core::mem::replace(&mut state.is_still, state.particles.position == state.step_start);
     // The first step that moves nothing counts: what is drawn still comes to rest with it.

@@ -164,6 +164,9 @@ struct Options {
     /// Damping of the velocity, 1/s
     #[arg(long, default_value_t = 1.0)]
     damping: f32,
+    /// What of the cloth meets itself
+    #[arg(long, value_enum, default_value = "off")]
+    self_collision: SelfContact,
     /// Threads that a large grid is shared by; with more than one, time is the wall clock's instead of the thread's own
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
     threads: u32,
@@ -234,6 +237,13 @@ enum Solver {
     Strands,
     Xpbd,
     Explicit,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum SelfContact {
+    Off,
+    Particles,
+    Robust,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]

@@ -25,6 +25,7 @@ struct Frame {
     p99_strain: f32,
     mean_strain: f32,
     penetration: f32,
+    intersecting_pairs: usize,
 }
 
 /// Runs `scene` and returns its line. With an `oracle` it also says how far the cloth is from it after 0.5 s, and how
@@ -89,6 +90,8 @@ fn line(name: &str, options: &Options, scene: &Scene, substeps: u32, frames: &[F
         "mean_strain": mean(|frame| frame.mean_strain),
         "max_strain_over_time": most(|frame| frame.max_strain),
         "max_penetration_m": most(|frame| frame.penetration),
+        "intersecting_pairs_end": frames.last().map(|frame| frame.intersecting_pairs),
+        "intersecting_pairs_worst": frames.iter().map(|frame| frame.intersecting_pairs).max(),
         "max_speed_end": scene.particles.velocity.iter().map(|v| v.length()).fold(0.0, f32::max),
         "finite": scene.particles.is_finite(),
         "peak_rss_mb": peak_rss_mb(),
@@ -115,6 +118,7 @@ fn measure(scene: &Scene, microseconds: f64) -> Frame {
         max_strain,
         p99_strain,
         mean_strain: strains.iter().map(|strain| strain.max(0.0)).sum::<f32>() / strains.len() as f32,
+        intersecting_pairs: solver::measure::intersecting_pairs(&scene.particles, &scene.topology),
         penetration: position.iter().map(depth).fold(0.0, f32::max),
     }
 }

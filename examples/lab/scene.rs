@@ -17,7 +17,7 @@ use bevy_drape::{
 };
 
 use super::{
-    Options, PinnedPart, Solver, Switch,
+    Options, PinnedPart, SelfContact, Solver, Switch,
     mesh::{self, MeshSource, Top},
     pins,
 };
@@ -72,7 +72,13 @@ impl Scene {
             tether_slack: options.tether_slack,
             margin: 0.0,
             max_depenetration_velocity: 1.0,
-            self_collision: SelfCollision::Off,
+            self_collision: match options.self_collision {
+                SelfContact::Off => SelfCollision::Off,
+                SelfContact::Particles => SelfCollision::Particles,
+                SelfContact::Robust => SelfCollision::Robust,
+            },
+            collision_layers: 1,
+            collision_mask: 1,
             self_distance: 0.004,
             self_friction: 0.3,
             obstacles: &self.obstacles,

@@ -1,5 +1,7 @@
 //! Puts springs, triangles and areas of a rest shape together.
 
+use std::sync::OnceLock;
+
 use bevy::prelude::*;
 
 use super::{
@@ -111,6 +113,7 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
         bend_rate,
         bends,
         bend_batches,
+        surface: OnceLock::new(),
     }
 }
 

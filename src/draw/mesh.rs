@@ -51,7 +51,7 @@ pub(crate) fn shape_cloths(
     _main_thread: NonSendMarker,
 ) {
     let now = clock.overstep();
-    parallel::for_each(&mut cloths, clock.parallel(), |(state, mut mesh, transform)| {
+    parallel::for_each(cloths.iter_mut(), clock.parallel(), |(state, mut mesh, transform)| {
         let ClothMesh { binding, shape, .. } = &mut *mesh;
         // Until the next step does a teleport, the cloth is drawn as if it had been done.
         let pose = if state.requests.teleport { state.pose } else { transform.affine() };

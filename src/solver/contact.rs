@@ -15,6 +15,14 @@ use super::{Lanes, Particles, StepContext};
 pub mod mesh;
 pub mod solid;
 
+mod closest;
+mod outline;
+pub(super) mod pair;
+mod search;
+pub(super) mod surface;
+pub(super) mod tangle;
+pub(super) mod touch;
+
 /// The way that a cloth may gain on an obstacle within a step by what pulls and pushes at it, m.
 const GAINED: f32 = 0.01;
 

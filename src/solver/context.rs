@@ -76,6 +76,10 @@ pub struct StepContext<'a> {
     pub max_depenetration_velocity: f32,
     /// What of the cloth meets itself and other cloths.
     pub self_collision: SelfCollision,
+    /// Layers that it is in for other cloths, one a bit.
+    pub collision_layers: u32,
+    /// Layers of the other cloths that it meets. Two meet where each is in the other's.
+    pub collision_mask: u32,
     /// Distance that parts of cloth keep from each other, m.
     pub self_distance: f32,
     /// Friction of cloth on cloth, no unit.
@@ -113,8 +117,15 @@ pub struct StepReport {
     /// Share of the asked stiffness and damping that was used, 0..=1. Below one when [`Method::Explicit`] would have
     /// needed more than [`StepContext::max_substeps`] substeps for the whole.
     pub stiffness_scale: f32,
-    /// Contacts in the last substep: pairs of a particle and an obstacle.
+    /// Contacts in the last substep: of particles with obstacles, and of points, edges and faces with each other. Those of cloths
+    /// that are stepped together count for the first.
     pub contacts: u32,
     /// Sum of the external forces and those of the air on all particles, whatever their direction, N.
     pub steady_force: f32,
+}
+
+impl StepReport {
+    /// Of a step that did nothing.
+    pub(super) const NOTHING: Self =
+        Self { substeps: 0, needed_substeps: 0, stiffness_scale: 1.0, contacts: 0, steady_force: 0.0 };
 }

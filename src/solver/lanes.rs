@@ -40,6 +40,14 @@ impl Points {
         (x[lane], y[lane], z[lane]) = (value.x, value.y, value.z);
     }
 
+    /// Hands one point for each particle back.
+    pub fn store(&self, order: Order, points: &mut [Vec3A], instructions: Instructions) {
+        for band in order.bands() {
+            let blocks = &self.0[band.blocks()];
+            dispatch!(instructions.level(), simd => store_blocks(simd, blocks, band, &mut points[band.particles()]));
+        }
+    }
+
     /// Takes over one point for each particle.
     pub fn load(&mut self, order: Order, points: &[Vec3A], instructions: Instructions) {
         self.resize(order.block_count());

@@ -5,6 +5,10 @@ use bevy::math::Vec3A;
 use super::{
     Material, Particles, SpringKind, Topology,
     constraint::{bend::Bent, face::Deformed, spring},
+    contact::{
+        surface::{Bounds, Places, Walk},
+        tangle,
+    },
 };
 
 /// Stretch along the threads: change of length over rest length of the structural springs, no unit. Negative where
@@ -74,6 +78,52 @@ pub fn energy(particles: &Particles, topology: &Topology, material: &Material, g
         }
     }
     energy
+}
+
+/// Pairs of triangles of a cloth that pass through each other. Neighbours, which share a corner, don't count.
+///
+/// Costs as much as a step, and allocates.
+pub fn intersecting_pairs(particles: &Particles, topology: &Topology) -> usize {
+    let surface = topology.surface();
+    let corners = |triangle: [u32; 3]| triangle.map(|i| particles.position[i as usize]);
+    let mut places = Places::default();
+    places.follow(surface, |triangle| Bounds::around(corners(triangle)), None::<fn(_) -> _>);
+    let mut count = 0;
+    Walk::default().between((surface, &places), (surface, &places), |p, q| {
+        for s in surface.of_leaf(p) {
+            for t in surface.of_leaf(q).filter(|&t| s < t) {
+                let (one, other) = (surface.triangles[s], surface.triangles[t]);
+                let is_apart = !one.iter().any(|corner| other.contains(corner));
+                count += usize::from(is_apart && tangle::intersect(corners(one), corners(other)));
+            }
+        }
+    });
+    count
+}
+
+/// Pairs of triangles of two cloths that pass through each other. The second's origin is `offset` (m) from the first's.
+///
+/// Costs as much as a step, and allocates.
+pub fn intersecting_pairs_between(
+    (particles, topology): (&Particles, &Topology),
+    (others, other): (&Particles, &Topology),
+    offset: Vec3A,
+) -> usize {
+    let (a, b) = (topology.surface(), other.surface());
+    let corners = |triangle: [u32; 3]| triangle.map(|i| particles.position[i as usize]);
+    let other_corners = |triangle: [u32; 3]| triangle.map(|i| others.position[i as usize] + offset);
+    let [mut at, mut bt] = [Places::default(), Places::default()];
+    at.follow(a, |triangle| Bounds::around(corners(triangle)), None::<fn(_) -> _>);
+    bt.follow(b, |triangle| Bounds::around(other_corners(triangle)), None::<fn(_) -> _>);
+    let mut count = 0;
+    Walk::default().between((a, &at), (b, &bt), |p, q| {
+        for s in a.of_leaf(p) {
+            for t in b.of_leaf(q) {
+                count += usize::from(tangle::intersect(corners(a.triangles[s]), other_corners(b.triangles[t])));
+            }
+        }
+    });
+    count
 }
 
 #[cfg(test)]

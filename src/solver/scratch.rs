@@ -11,6 +11,7 @@ use super::{
         plate::Plate,
         tether::PinPlaces,
     },
+    contact::touch::Touch,
     force::wind::Air,
     lanes::Points,
     share::Bench,
@@ -47,6 +48,8 @@ pub struct Scratch {
     pub(super) pins: PinPlaces,
     /// What this thread needs of its own.
     pub(super) bench: Bench,
+    /// What is touched with triangles and edges: of the first of the cloths that are stepped together.
+    pub(super) touch: Touch,
     /// What each thread needs of its own that shares a large cloth.
     pub(super) benches: Vec<Bench>,
     /// What the bodies among the obstacles were given.

@@ -1,11 +1,14 @@
 //! The loop over the substeps.
 
+use core::ops::Range;
+
 use bevy::{math::Vec3A, tasks::TaskPool};
 
 use super::{
-    Lattice, Method, Particles, Scratch, StepContext, StepReport, Topology,
+    Lattice, LevelPass, Method, Particles, Scratch, SelfCollision, StepContext, StepReport, Topology,
     constraint::{anchor, grab, weave::Last},
-    contact, explicit,
+    contact::{self, touch::Touch},
+    explicit,
     force::wind,
     integrate::{self, Motion, SpeedLimit},
     share,
@@ -31,98 +34,19 @@ const AIR_RATE: f32 = 160.0;
 /// Nothing is allocated once `scratch` has seen a cloth of this size, but for what threads need that share one. The same
 /// input gives the same bits. A time step that isn't positive does nothing.
 pub fn step(particles: &mut Particles, topology: &Topology, ctx: &StepContext, scratch: &mut Scratch) -> StepReport {
-    let dt = ctx.dt.min(MAX_TIME_STEP);
-    if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
-        return StepReport { substeps: 0, needed_substeps: 0, stiffness_scale: 1.0, contacts: 0, steady_force: 0.0 };
-    }
-    let instructions = scratch.instructions;
-    let is_near = contact::is_any_near(particles, ctx, dt);
-    let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
-    let with_care = is_near || !is_tethered || !ctx.grabs.is_empty();
-    let (wanted, levels) = ctx.effort.of_step(with_care, dt);
-    let helpers = helpers(topology, ctx);
-    let Loaded { is_pushed, mut has_moved } = load(particles, topology, ctx, dt / wanted as f32, helpers, scratch);
-    grab::take_up(&mut scratch.lanes, ctx.grabs);
-    let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
-        Method::Strands => (u32::MAX, wanted, 1.0, levels),
-        Method::Xpbd => (u32::MAX, wanted, 1.0, &[][..]),
-        Method::Explicit => {
-            let (needed, scale) =
-                explicit::stable_substeps(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
-            (ctx.max_substeps.max(1), needed, scale, &[][..])
+    let mut touch = core::mem::take(&mut scratch.touch);
+    let report = match Plan::new(particles, topology, ctx, scratch) {
+        None => StepReport::NOTHING,
+        Some(plan) => {
+            let substeps = plan.substeps;
+            let mut running = [Running::begin(plan, particles, topology, ctx, scratch, substeps, Vec3A::ZERO)];
+            run(&mut running, substeps, &mut touch);
+            let [running] = running;
+            running.end()
         }
     };
-    let substeps = needed_substeps.min(most);
-    let last = Last::between(ctx.anchors, topology.order());
-    let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
-    let limit = SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most };
-    let h = dt / substeps as f32;
-    let substep = Substep {
-        topology,
-        ctx,
-        h,
-        stiffness_scale,
-        is_pushed,
-        is_near,
-        limit,
-        helpers,
-        last,
-        levels,
-        slack: ctx.slack(),
-    };
-    let air_interval = ((1.0 / (AIR_RATE * substep.h)) as u32).max(1);
-    let mut contacts = 0;
-
-    scratch.air.sample(particles, ctx);
-    substep.prepare(scratch);
-    for i in 0..substeps {
-        let span = i as f32 / substeps as f32..(i + 1) as f32 / substeps as f32;
-        if i % air_interval == 0 {
-            substep.renew_steady_force(particles, air_interval, scratch);
-        }
-        grab::carry(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
-        if ctx.method == Method::Explicit {
-            substep.add_spring_forces(particles, scratch);
-        }
-        if !has_moved {
-            substep.move_freely(scratch);
-        }
-        anchor::advance(&mut scratch.lanes, ctx.anchors, span.end, dt);
-        if let Some(tethers) = ctx.tethers {
-            scratch.pins.read(tethers, &scratch.lanes);
-        }
-        // Hands, and forces that are renewed, come first.
-        let goes_on = i + 1 < substeps && ctx.grabs.is_empty() && !(is_pushed && (i + 1) % air_interval == 0);
-        has_moved = goes_on && ctx.method != Method::Explicit;
-        let mut is_finished = false;
-        match ctx.method {
-            Method::Strands => {
-                grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
-                is_finished = substep.solve_strands(scratch, has_moved);
-            }
-            Method::Xpbd => {
-                substep.solve_springs(scratch);
-                grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
-                // After the hands: where both can't hold, pins are stronger.
-                substep.solve_tethers(scratch);
-            }
-            Method::Explicit => grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h),
-        }
-        if is_near {
-            contacts = contact::project(&mut scratch.lanes, ctx, span);
-        }
-        // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
-        if !is_finished && (ctx.method != Method::Explicit || contacts > 0 || !ctx.grabs.is_empty()) {
-            let Scratch { lanes, applied_force, .. } = &mut *scratch;
-            integrate::finish(&mut lanes.whole(), substep.finish(applied_force, has_moved), instructions);
-        }
-    }
-    match helpers {
-        Some((pool, _)) => share::store(pool, &mut scratch.lanes, particles, instructions),
-        None => scratch.lanes.store(particles, instructions),
-    }
-    let steady_force = if is_pushed { scratch.steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
-    StepReport { substeps, needed_substeps, stiffness_scale, contacts, steady_force }
+    scratch.touch = touch;
+    report
 }
 
 /// One of several cloths that are stepped together.
@@ -144,10 +68,236 @@ pub struct Member<'a> {
 
 /// Advances cloths that may touch each other, substep by substep, by the time step that they share.
 ///
-/// Those whose [`self_collision`](StepContext::self_collision) isn't off meet each other.
+/// Those whose [`self_collision`](StepContext::self_collision) isn't off meet each other. All take as many substeps as the
+/// one that needs most.
 pub fn step_together(members: &mut [Member]) {
-    for member in members {
-        member.report = Some(step(member.particles, member.topology, member.ctx, member.scratch));
+    let Some(first) = members.first_mut() else { return };
+    let mut touch = core::mem::take(&mut first.scratch.touch);
+    let plans: Vec<Option<Plan>> = members
+        .iter_mut()
+        .map(|Member { particles, topology, ctx, scratch, .. }| Plan::new(particles, topology, ctx, scratch))
+        .collect();
+    let substeps = plans.iter().flatten().map(|plan| plan.substeps).max().unwrap_or(0);
+    let mut numbers = Vec::new();
+    let mut running = Vec::new();
+    for (number, (member, plan)) in members.iter_mut().zip(plans).enumerate() {
+        member.report = Some(StepReport::NOTHING);
+        let Some(plan) = plan else { continue };
+        let Member { particles, topology, ctx, scratch, offset, .. } = member;
+        running.push(Running::begin(plan, particles, topology, ctx, scratch, substeps, *offset));
+        numbers.push(number);
+    }
+    run(&mut running, substeps, &mut touch);
+    let reports: Vec<StepReport> = running.into_iter().map(Running::end).collect();
+    for (number, report) in numbers.into_iter().zip(reports) {
+        members[number].report = Some(report);
+    }
+    if let Some(first) = members.first_mut() {
+        first.scratch.touch = touch;
+    }
+}
+
+/// The substeps of cloths that may touch each other.
+fn run(cloths: &mut [Running], substeps: u32, touch: &mut Touch) {
+    let may_touch = cloths.iter().any(|cloth| cloth.substep.touches);
+    if may_touch {
+        touch.begin();
+    }
+    for i in 0..substeps {
+        let span = i as f32 / substeps as f32..(i + 1) as f32 / substeps as f32;
+        for cloth in &mut *cloths {
+            cloth.advance(i, span.clone());
+        }
+        if may_touch && let Some(Substep { h, ctx, .. }) = cloths.first().map(|cloth| cloth.substep) {
+            let touched = touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
+            // Whose they are isn't known: they count once.
+            cloths[0].touched = touched;
+        }
+        for cloth in &mut *cloths {
+            cloth.finish(span.clone());
+        }
+    }
+}
+
+/// What is known of a cloth's step before its substeps begin.
+struct Plan<'a> {
+    dt: f32,
+    is_near: bool,
+    levels: &'a [LevelPass],
+    substeps: u32,
+    needed_substeps: u32,
+    stiffness_scale: f32,
+}
+
+impl<'a> Plan<'a> {
+    /// None where there is nothing to do.
+    fn new(
+        particles: &Particles,
+        topology: &Topology,
+        ctx: &'a StepContext<'a>,
+        scratch: &mut Scratch,
+    ) -> Option<Self> {
+        let dt = ctx.dt.min(MAX_TIME_STEP);
+        if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
+            return None;
+        }
+        let is_near = contact::is_any_near(particles, ctx, dt);
+        let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
+        let with_care = is_near || !is_tethered || !ctx.grabs.is_empty();
+        let (wanted, levels) = ctx.effort.of_step(with_care, dt);
+        let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
+            Method::Strands => (u32::MAX, wanted, 1.0, levels),
+            Method::Xpbd => (u32::MAX, wanted, 1.0, &[][..]),
+            Method::Explicit => {
+                scratch.lanes.load(particles, topology.order(), scratch.instructions);
+                grab::take_up(&mut scratch.lanes, ctx.grabs);
+                let (needed, scale) =
+                    explicit::stable_substeps(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
+                (ctx.max_substeps.max(1), needed, scale, &[][..])
+            }
+        };
+        let substeps = needed_substeps.min(most);
+        Some(Self { dt, is_near, levels, substeps, needed_substeps, stiffness_scale })
+    }
+}
+
+/// A cloth within its step.
+pub(super) struct Running<'a> {
+    pub particles: &'a mut Particles,
+    pub scratch: &'a mut Scratch,
+    pub topology: &'a Topology,
+    pub ctx: &'a StepContext<'a>,
+    substep: Substep<'a>,
+    /// Its origin from that of the first cloth, m.
+    pub offset: Vec3A,
+    dt: f32,
+    substeps: u32,
+    needed_substeps: u32,
+    /// Substeps from one renewal of the air's forces to the next.
+    air_interval: u32,
+    /// Whether the free motion of the coming substep is done.
+    has_moved: bool,
+    /// Whether threads that share the work have finished the substep.
+    is_finished: bool,
+    contacts: u32,
+    /// Pairs of features that touched in the latest substep.
+    touched: u32,
+}
+
+impl<'a> Running<'a> {
+    fn begin(
+        plan: Plan<'a>,
+        particles: &'a mut Particles,
+        topology: &'a Topology,
+        ctx: &'a StepContext<'a>,
+        scratch: &'a mut Scratch,
+        substeps: u32,
+        offset: Vec3A,
+    ) -> Self {
+        let Plan { dt, is_near, levels, needed_substeps, stiffness_scale, .. } = plan;
+        let h = dt / substeps as f32;
+        let helpers = helpers(topology, ctx);
+        let Loaded { is_pushed, has_moved } = load(particles, topology, ctx, h, helpers, scratch);
+        grab::take_up(&mut scratch.lanes, ctx.grabs);
+        let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
+        let substep = Substep {
+            topology,
+            ctx,
+            h,
+            stiffness_scale,
+            is_pushed,
+            is_near,
+            touches: ctx.self_collision != SelfCollision::Off || is_near,
+            limit: SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most },
+            helpers,
+            last: Last::between(ctx.anchors, topology.order()),
+            levels,
+            slack: ctx.slack(),
+        };
+        scratch.air.sample(particles, ctx);
+        substep.prepare(scratch);
+        Self {
+            particles,
+            scratch,
+            topology,
+            ctx,
+            substep,
+            offset,
+            dt,
+            substeps,
+            needed_substeps,
+            air_interval: ((1.0 / (AIR_RATE * h)) as u32).max(1),
+            has_moved,
+            is_finished: false,
+            contacts: 0,
+            touched: 0,
+        }
+    }
+
+    /// Moves the cloth through the part `span` of the step, its substep `i`, as if it touched nothing.
+    fn advance(&mut self, i: u32, span: Range<f32>) {
+        let Self { particles, scratch, substep, air_interval, .. } = self;
+        let ctx = substep.ctx;
+        if i.is_multiple_of(*air_interval) {
+            substep.renew_steady_force(particles, *air_interval, scratch);
+        }
+        grab::carry(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
+        if ctx.method == Method::Explicit {
+            substep.add_spring_forces(particles, scratch);
+        }
+        if !self.has_moved {
+            substep.move_freely(scratch);
+        }
+        anchor::advance(&mut scratch.lanes, ctx.anchors, span.end, self.dt);
+        if let Some(tethers) = ctx.tethers {
+            scratch.pins.read(tethers, &scratch.lanes);
+        }
+        // Hands, and forces that are renewed, come first.
+        let is_renewed = substep.is_pushed && (i + 1).is_multiple_of(*air_interval);
+        let goes_on = i + 1 < self.substeps && ctx.grabs.is_empty() && !is_renewed;
+        self.has_moved = goes_on && ctx.method != Method::Explicit;
+        self.is_finished = false;
+        match ctx.method {
+            Method::Strands => {
+                grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
+                self.is_finished = substep.solve_strands(scratch, self.has_moved);
+            }
+            Method::Xpbd => {
+                substep.solve_springs(scratch);
+                grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
+                // After the hands: where both can't hold, pins are stronger.
+                substep.solve_tethers(scratch);
+            }
+            Method::Explicit => grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h),
+        }
+    }
+
+    /// Keeps the cloth out of obstacles and ends the substep.
+    fn finish(&mut self, span: Range<f32>) {
+        let Self { scratch, substep, .. } = self;
+        let ctx = substep.ctx;
+        if substep.is_near {
+            self.contacts = contact::project(&mut scratch.lanes, ctx, span);
+        }
+        // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
+        let is_constrained = ctx.method != Method::Explicit || substep.touches || !ctx.grabs.is_empty();
+        if !self.is_finished && is_constrained {
+            let Scratch { lanes, applied_force, instructions, .. } = &mut **scratch;
+            integrate::finish(&mut lanes.whole(), substep.finish(applied_force, self.has_moved), *instructions);
+        }
+    }
+
+    /// Hands the state back.
+    fn end(self) -> StepReport {
+        let Self { particles, scratch, substep, substeps, needed_substeps, contacts, touched, .. } = self;
+        let contacts = contacts + touched;
+        let Scratch { lanes, steady_force, instructions, .. } = scratch;
+        match substep.helpers {
+            Some((pool, _)) => share::store(pool, lanes, particles, *instructions),
+            None => lanes.store(particles, *instructions),
+        }
+        let steady_force = if substep.is_pushed { steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
+        StepReport { substeps, needed_substeps, stiffness_scale: substep.stiffness_scale, contacts, steady_force }
     }
 }
 

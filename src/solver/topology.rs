@@ -1,10 +1,15 @@
 //! What is connected to what: built once from the rest shape, immutable, shared by all cloths of that shape.
 
 use core::ops::Range;
+use std::sync::OnceLock;
 
 use bevy::math::Vec3;
 
-use super::{Braid, Lattice, Level, order::Order};
+use super::{Braid, Lattice, Level, SelfCollision, contact::surface::Surface, order::Order};
+
+/// Distance between balls at the particles that nothing gets through, as a share of the mean edge: of a square cell, a corner is
+/// 0.71 of its side from the middle, and the mean edge, diagonals too, is 1.14 of it.
+const BALL: f32 = 0.65;
 
 /// What a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -170,12 +175,28 @@ pub struct Topology {
     pub braids: Vec<Braid>,
     /// Coarse lattices, the coarsest first.
     pub levels: Vec<Level>,
+    /// Triangles, corners and edges to be found by what touches them.
+    pub(crate) surface: OnceLock<Surface>,
 }
 
 impl Topology {
     /// Number of particles.
     pub fn particle_count(&self) -> usize {
         self.areas.len()
+    }
+
+    /// Triangles, corners and edges to be found by what touches them: sorted when that is asked for first.
+    pub(super) fn surface(&self) -> &Surface {
+        self.surface.get_or_init(|| Surface::new(&self.rest, &self.triangles))
+    }
+
+    /// Distance that parts of the cloth keep from each other, m, where that of the settings is `distance`: balls at its
+    /// particles are larger, so that nothing gets through between them.
+    pub fn self_distance(&self, mode: SelfCollision, distance: f32) -> f32 {
+        match mode {
+            SelfCollision::Particles => distance.max(BALL * self.surface().mean_edge),
+            SelfCollision::Robust | SelfCollision::Off => distance,
+        }
     }
 
     /// Where the particles stand while a step runs.

@@ -156,6 +156,8 @@ impl Bed {
             margin: self.margin,
             max_depenetration_velocity: 1.0,
             self_collision: self.self_collision,
+            collision_layers: 1,
+            collision_mask: 1,
             self_distance: 0.004,
             self_friction: 0.3,
             obstacles: &self.obstacles,

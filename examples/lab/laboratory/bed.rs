@@ -126,6 +126,8 @@ impl Bed {
             margin: 0.0,
             max_depenetration_velocity: 1.0,
             self_collision: SelfCollision::Off,
+            collision_layers: 1,
+            collision_mask: 1,
             self_distance: 0.004,
             self_friction: 0.3,
             obstacles: &self.obstacles,

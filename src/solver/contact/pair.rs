@@ -1,4 +1,4 @@
-//! Contact between two features that may touch: a point and a face, or two edges.
+//! Contact between two features that may touch: a point and a face, two edges, or two points.
 //!
 //! ```text
 //!      0                 0 ----- 1
@@ -33,6 +33,8 @@ pub enum Features {
     PointFace,
     /// The edge of the first two points and that of the others.
     EdgeEdge,
+    /// The first point and the second; the others are the same as that.
+    PointPoint,
 }
 
 /// Two features that may touch.
@@ -75,6 +77,7 @@ impl Features {
                 let (s, t) = closest::on_edges([a, b], [c, d]);
                 [1.0 - s, s, t - 1.0, -t]
             }
+            Self::PointPoint => [1.0, -1.0, 0.0, 0.0],
         };
         Nearest { weights, between: weighted(weights, [a, b, c, d]) }
     }
@@ -86,6 +89,7 @@ impl Features {
         match self {
             Self::PointFace => a - b.max(c).max(d) > distance,
             Self::EdgeEdge => a.min(b) - c.max(d) > distance,
+            Self::PointPoint => a - b > distance,
         }
     }
 }
@@ -117,7 +121,7 @@ impl Pair {
         }
         // Of an edge's places, the far end is at weight 1.
         let distance = match self.features {
-            Features::PointFace => self.distance,
+            Features::PointFace | Features::PointPoint => self.distance,
             Features::EdgeEdge => self.distance - self.taper * weights[3],
         };
         let target = distance.min(self.gap + most_parted);
@@ -149,6 +153,10 @@ impl Pair {
     fn has_passed(&self, before: [Vec3A; 4], after: [Vec3A; 4]) -> bool {
         let [b0, b1, b2, b3] = before;
         let [a0, a1, a2, a3] = after;
+        if self.features == Features::PointPoint {
+            // Balls are passed by.
+            return false;
+        }
         // Six times the volume between the four points is zero where they are in one plane.
         let volume = |[p, q, r, s]: [Vec3A; 4]| (q - p).cross(r - p).dot(s - p);
         let (start, end) = (volume([b0, b1, b2, b3]), volume([a0, a1, a2, a3]));

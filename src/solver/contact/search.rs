@@ -82,16 +82,21 @@ pub struct Found {
     pub approach: f32,
 }
 
+impl Found {
+    /// Whether it is a particle of the first side and a face of the other.
+    pub fn is_of_face(&self) -> bool {
+        self.pair.features == Features::PointFace && self.is_first_of_a
+    }
+}
+
 /// Shows the pairs of features of triangle `s` of `a` and triangle `t` of `b` that may touch.
-pub fn pairs_between(
-    (a, s): (&Side, usize),
-    (b, t): (&Side, usize),
-    reach: &Reach,
-    mut found: impl FnMut(Found),
-) {
+pub fn pairs_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Reach, mut found: impl FnMut(Found)) {
     let (triangle, other) = (a.surface.triangles[s], b.surface.triangles[t]);
     let (mine, theirs) = (&a.surface.owned[s], &b.surface.owned[t]);
     let is_same = reach.rest.is_some();
+    if is_same && triangle.iter().any(|corner| other.contains(corner)) && is_open(a, triangle, other) {
+        return;
+    }
     if b.has_faces {
         for (&corner, sharp) in triangle.iter().zip(mine.corners) {
             if sharp > a.sharper_than && !(is_same && other.contains(&corner)) {
@@ -121,20 +126,41 @@ pub fn pairs_between(
     }
 }
 
+/// Shows the pairs of corners of triangle `s` of `a` and triangle `t` of `b` that may touch as balls.
+pub fn balls_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Reach, mut found: impl FnMut(Found)) {
+    for (corner, sharp) in a.surface.triangles[s].into_iter().zip(a.surface.owned[s].corners) {
+        if sharp <= a.sharper_than {
+            continue;
+        }
+        for (other, sharp) in b.surface.triangles[t].into_iter().zip(b.surface.owned[t].corners) {
+            if sharp > b.sharper_than && !(reach.rest.is_some() && corner == other) {
+                found_between(Features::PointPoint, [a, b, b, b], [corner, other, other, other], reach, &mut found);
+            }
+        }
+    }
+}
+
+/// Cosine of the angle between triangles that share a corner from which on they are near to folding up.
+const OPEN: f32 = 0.3;
+
+/// Whether two triangles of a surface that share a corner are far from folding up onto each other.
+fn is_open(side: &Side, triangle: [u32; 3], other: [u32; 3]) -> bool {
+    let normal = |triangle: [u32; 3]| {
+        let [a, b, c] = triangle.map(|i| side.ways.position[i as usize]);
+        (b - a).cross(c - a)
+    };
+    let (n, m) = (normal(triangle), normal(other));
+    n.dot(m) > OPEN * (n.length_squared() * m.length_squared()).sqrt()
+}
+
 /// Shows a pair of features if it may touch.
 #[inline]
-fn found_between(
-    features: Features,
-    sides: [&Side; 4],
-    points: [u32; 4],
-    reach: &Reach,
-    found: impl FnOnce(Found),
-) {
+fn found_between(features: Features, sides: [&Side; 4], points: [u32; 4], reach: &Reach, found: impl FnOnce(Found)) {
     let of = |i: usize| points[i] as usize;
     let places: [Vec3A; 4] = core::array::from_fn(|i| sides[i].ways.position[of(i)]);
     let [w0, w1, w2, w3] = core::array::from_fn(|i| sides[i].ways.way[of(i)]);
     let (distance, taper) = match features {
-        Features::PointFace => (reach.distance + sides[0].radius(points[0]), 0.0),
+        Features::PointFace | Features::PointPoint => (reach.distance + sides[0].radius(points[0]), 0.0),
         Features::EdgeEdge => {
             let near = sides[2].radius(points[2]);
             (reach.distance + near, sides[3].radius(points[3]) - near)
@@ -143,6 +169,7 @@ fn found_between(
     let apart = |p: Vec3A, q: Vec3A| p.distance_squared(q);
     let approach = match features {
         Features::PointFace => apart(w0, w1).max(apart(w0, w2)).max(apart(w0, w3)),
+        Features::PointPoint => apart(w0, w1),
         Features::EdgeEdge => apart(w0, w2).max(apart(w0, w3)).max(apart(w1, w2)).max(apart(w1, w3)),
     };
     let approach = approach.sqrt() + reach.slack;

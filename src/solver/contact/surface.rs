@@ -39,6 +39,9 @@ pub struct Surface {
     pub mean_edge: f32,
     /// Length of the longest edge at rest, m.
     pub longest_edge: f32,
+    /// Leaves that share a corner with each leaf, in their order, leaf after leaf; and where those of each end.
+    beside: Vec<u32>,
+    beside_end: Vec<u32>,
     /// Number of leaves, a power of two. Node 1 is the root, and nodes 2 k and 2 k + 1 are within node k.
     leaves: usize,
 }
@@ -56,17 +59,46 @@ impl Surface {
             let mine = |is_new: bool| if is_new { 1.0 } else { 0.0 };
             let corners = triangle.map(|i| mine(!core::mem::replace(&mut seen_corners[i as usize], true)));
             let [a, b, c] = *triangle;
-            let edges = [(a, b), (b, c), (c, a)].map(|(p, q)| mine(seen_edges.insert((p.min(q), p.max(q)))));
+            let edges = [(a, b), (b, c), (c, a)].map(|(p, q)| mine(p != q && seen_edges.insert((p.min(q), p.max(q)))));
             Owned { corners, edges }
         };
         let owned = triangles.iter().map(own).collect();
-        let mut surface = Self { triangles, owned, leaves, mean_edge: 0.0, longest_edge: 0.0 };
+        let mut surface = Self { triangles, owned, leaves, ..Self::default() };
+        surface.find_neighbours(rest.len());
         let lengths = || surface.edges().map(|[a, b]| rest[a as usize].distance(rest[b as usize]));
-        let (sum, longest, count) = lengths().fold((0.0, 0.0_f32, 0), |(sum, longest, count), length| {
-            (sum + length, longest.max(length), count + 1)
-        });
+        let (sum, longest, count) = lengths()
+            .fold((0.0, 0.0_f32, 0), |(sum, longest, count), length| (sum + length, longest.max(length), count + 1));
         (surface.mean_edge, surface.longest_edge) = (sum / count.max(1) as f32, longest);
         surface
+    }
+
+    /// Finds which leaves share a corner.
+    fn find_neighbours(&mut self, point_count: usize) {
+        let mut leaves_at: Vec<Vec<u32>> = vec![Vec::new(); point_count];
+        let leaves = self.leaves as u32..2 * self.leaves as u32;
+        for leaf in leaves.clone() {
+            for &corner in self.triangles[self.of_leaf(leaf)].as_flattened() {
+                let at = &mut leaves_at[corner as usize];
+                if at.last() != Some(&leaf) {
+                    at.push(leaf);
+                }
+            }
+        }
+        for leaf in leaves {
+            let corners = self.triangles[self.of_leaf(leaf)].as_flattened();
+            let mut beside: Vec<u32> = corners.iter().flat_map(|&i| leaves_at[i as usize].iter().copied()).collect();
+            beside.sort_unstable();
+            beside.dedup();
+            self.beside.extend(beside);
+            self.beside_end.push(self.beside.len() as u32);
+        }
+    }
+
+    /// Whether two leaves share a corner.
+    fn are_beside(&self, leaf: u32, other: u32) -> bool {
+        let i = leaf as usize - self.leaves;
+        let start = if i == 0 { 0 } else { self.beside_end[i - 1] as usize };
+        self.beside[start..self.beside_end[i] as usize].binary_search(&other).is_ok()
     }
 
     /// All edges, once each.
@@ -203,7 +235,7 @@ fn facing(normal: Vec3A) -> u32 {
 }
 
 /// Where the triangles of a surface are, and its patches.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Places {
     /// Box around each triangle.
     pub of_triangles: Vec<Bounds>,
@@ -288,18 +320,19 @@ impl Walk {
             let (first, other) = (2 * node, 2 * node + 1);
             self.left.clear();
             self.left.push((first, other));
-            self.down((surface, places), (surface, places), &mut visit);
+            // Two that share a corner and face one way are a patch too.
+            let mut visit_folded = |p: u32, q: u32| {
+                if places.facing[p as usize] & places.facing[q as usize] == 0 || !surface.are_beside(p, q) {
+                    visit(p, q);
+                }
+            };
+            self.down((surface, places), (surface, places), &mut visit_folded);
             self.folded.extend([other, first]);
         }
     }
 
     /// Visits the pairs of leaves below what is left whose boxes meet.
-    fn down(
-        &mut self,
-        (a, at): (&Surface, &Places),
-        (b, bt): (&Surface, &Places),
-        visit: &mut impl FnMut(u32, u32),
-    ) {
+    fn down(&mut self, (a, at): (&Surface, &Places), (b, bt): (&Surface, &Places), visit: &mut impl FnMut(u32, u32)) {
         while let Some((p, q)) = self.left.pop() {
             if !at.of_nodes[p as usize].meets(&bt.of_nodes[q as usize]) {
                 continue;
@@ -308,12 +341,9 @@ impl Walk {
                 (true, true) => visit(p, q),
                 (false, true) => self.left.extend([(2 * p + 1, q), (2 * p, q)]),
                 (true, false) => self.left.extend([(p, 2 * q + 1), (p, 2 * q)]),
-                (false, false) => self.left.extend([
-                    (2 * p + 1, 2 * q + 1),
-                    (2 * p + 1, 2 * q),
-                    (2 * p, 2 * q + 1),
-                    (2 * p, 2 * q),
-                ]),
+                (false, false) => {
+                    self.left.extend([(2 * p + 1, 2 * q + 1), (2 * p + 1, 2 * q), (2 * p, 2 * q + 1), (2 * p, 2 * q)])
+                }
             }
         }
     }

@@ -2,6 +2,8 @@
 
 use bevy::math::Vec3A;
 
+use super::pair::Points;
+
 /// Whether two triangles without a common corner pass through each other: an edge of one pierces the other.
 pub fn intersect(first: [Vec3A; 3], other: [Vec3A; 3]) -> bool {
     (0..3).any(|i| pierces([first[i], first[(i + 1) % 3]], other).is_some())
@@ -22,6 +24,76 @@ pub fn pierces([from, to]: [Vec3A; 2], [a, b, c]: [Vec3A; 3]) -> Option<f32> {
     let place = from + way * share;
     let inside = |p: Vec3A, q: Vec3A| normal.dot((q - p).cross(place - p)) >= 0.0;
     (inside(a, b) && inside(b, c) && inside(c, a)).then_some(share)
+}
+
+/// An edge that pierces a face of cloth, and the way out.
+///
+/// The two are moved against each other along the direction in which the line where the surfaces cross gets shorter (Volino
+/// and Magnenat-Thalmann, "Resolving Surface Collisions through Intersection Contour Minimization", 2006, equation 6).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangle {
+    /// The edge, then the face.
+    points: [u32; 5],
+    /// Weights of the points at the place where they cross: of the edge, then of the face.
+    weights: [f32; 5],
+    /// Unit vector along which the edge is to go.
+    way: Vec3A,
+}
+
+/// Finds where the edges of two triangles pierce the other one. `numbers` are those of their corners, `places` are where
+/// these are.
+pub fn find(numbers: [[u32; 3]; 2], places: &[Vec3A], tangles: &mut Vec<Tangle>) {
+    let corners = numbers.map(|triangle| triangle.map(|i| places[i as usize]));
+    let normals = corners.map(|[a, b, c]| (b - a).cross(c - a));
+    // Mostly all of one is on one side of the other.
+    for (i, j) in [(0, 1), (1, 0)] {
+        let [p, q, r] = corners[j].map(|corner| normals[i].dot(corner - corners[i][0]) > 0.0);
+        if p == q && q == r {
+            return;
+        }
+    }
+    for (i, j) in [(0, 1), (1, 0)] {
+        for k in 0..3 {
+            let [from, to, apex] = [k, (k + 1) % 3, (k + 2) % 3];
+            let edge = [corners[i][from], corners[i][to]];
+            let Some(share) = pierces(edge, corners[j]) else { continue };
+            let place = edge[0].lerp(edge[1], share);
+            let along = (edge[1] - edge[0]).normalize_or_zero();
+            let normal = normals[j].normalize_or_zero();
+            let crossing = normals[i].cross(normals[j]).normalize_or_zero();
+            // The part of the crossing that lies within the edge's triangle.
+            let inward = corners[i][apex] - edge[0];
+            let inward = inward - along * inward.dot(along);
+            let crossing = if crossing.dot(inward) < 0.0 { -crossing } else { crossing };
+            let across = along.dot(normal);
+            if across.abs() < 1e-4 {
+                continue;
+            }
+            let way = crossing - normal * (2.0 * along.dot(crossing) / across);
+            let on = super::closest::on_triangle(place, corners[j]);
+            tangles.push(Tangle {
+                points: [numbers[i][from], numbers[i][to], numbers[j][0], numbers[j][1], numbers[j][2]],
+                weights: [1.0 - share, share, on.x, on.y, on.z],
+                way: way.normalize_or_zero(),
+            });
+        }
+    }
+}
+
+impl Tangle {
+    /// Moves edge and face against each other by `far` (m).
+    pub fn solve(&self, points: &mut Points, far: f32) {
+        let all = self.points.map(|i| i as usize);
+        let masses = all.map(|i| points.inverse_mass[i]);
+        let give: f32 = self.weights.iter().zip(masses).map(|(weight, w)| weight * weight * w).sum();
+        if give <= 0.0 {
+            return;
+        }
+        for (k, (&i, w)) in all.iter().zip(masses).enumerate() {
+            let towards = if k < 2 { far } else { -far };
+            points.position[i] += self.way * (towards * self.weights[k] * w / give);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -36,6 +36,8 @@ pub(super) struct Substep<'a> {
     pub is_pushed: bool,
     /// Whether anything is so near that it may be touched.
     pub is_near: bool,
+    /// Whether triangles and edges may touch something.
+    pub touches: bool,
     pub limit: SpeedLimit,
     /// The threads that share the work, and the lattice that all springs are on.
     pub helpers: Option<(&'a TaskPool, &'a Lattice)>,
@@ -123,7 +125,7 @@ impl Substep<'_> {
         let yarn = Yarn::new(&self.ctx.material, self.h);
         if let Some((pool, lattice)) = self.helpers {
             let Scratch { lanes, pins, levels, plate, benches, applied_force, instructions, .. } = scratch;
-            let finish = (!self.is_near).then(|| self.finish(applied_force, goes_on));
+            let finish = (!self.is_near && !self.touches).then(|| self.finish(applied_force, goes_on));
             let work = Work {
                 weaver: Weaver { lattice, yarn, plate, instructions: *instructions },
                 cells: CellYarn::new(&self.ctx.material, self.h, plate),

@@ -1,0 +1,70 @@
+//! Which cloths may touch each other within a step.
+
+use bevy::{
+    math::{
+        Vec3A,
+        bounding::{Aabb3d, BoundingVolume, IntersectsVolume},
+    },
+    prelude::*,
+};
+
+use crate::{
+    cloth::Cloth,
+    solver::{MAX_TIME_STEP, SelfCollision},
+    state::ClothState,
+};
+
+/// A cloth that is ready, by its entity.
+pub(super) type Ready<'a> = (Entity, Mut<'a, ClothState>);
+
+/// By how much particles may gain on each other within a step beyond their speed, m.
+const GAINED: f32 = 0.02;
+
+/// Puts cloths that may touch each other within `dt` seconds together, in the order of their entities.
+pub(super) fn group(ready: Vec<Ready>, dt: f32) -> Vec<Vec<Ready>> {
+    let (mut meeting, alone): (Vec<Ready>, Vec<Ready>) =
+        ready.into_iter().partition(|(_, state)| state.settings.self_collision != SelfCollision::Off);
+    meeting.sort_unstable_by_key(|&(entity, _)| entity);
+    let boxes: Vec<Option<Aabb3d>> = meeting.iter().map(|(_, state)| reached(state, dt)).collect();
+    // The first of each cloth's group.
+    let mut leader: Vec<usize> = (0..meeting.len()).collect();
+    for i in 0..meeting.len() {
+        for j in 0..i {
+            let (Some(one), Some(other)) = (&boxes[i], &boxes[j]) else { continue };
+            if leader[i] != leader[j] && may_meet(&meeting[i].1, &meeting[j].1) && one.intersects(other) {
+                let (first, last) = (leader[i].min(leader[j]), leader[i].max(leader[j]));
+                leader.iter_mut().filter(|leader| **leader == last).for_each(|leader| *leader = first);
+            }
+        }
+    }
+    let mut groups: Vec<Vec<Ready>> = meeting.iter().map(|_| Vec::new()).collect();
+    for (cloth, leader) in meeting.into_iter().zip(leader) {
+        groups[leader].push(cloth);
+    }
+    groups.retain(|group| !group.is_empty());
+    groups.extend(alone.into_iter().map(|cloth| vec![cloth]));
+    groups
+}
+
+/// Whether each of two cloths is in the other's mask.
+fn may_meet(one: &ClothState, other: &ClothState) -> bool {
+    let meets =
+        |one: &ClothState, other: &ClothState| one.settings.collision_mask & other.settings.collision_layers != 0;
+    meets(one, other) && meets(other, one)
+}
+
+/// Box around what a cloth may reach within a step, in the world; none of a cloth that is nowhere.
+fn reached(state: &ClothState, dt: f32) -> Option<Aabb3d> {
+    let (particles, dt) = (&state.particles, dt.min(MAX_TIME_STEP));
+    let origin = Vec3A::from(state.origin);
+    let ends = |(&place, &velocity): (&Vec3A, &Vec3A)| [origin + place, origin + place + velocity * dt];
+    let mut places = particles.position.iter().zip(&particles.velocity).flat_map(ends);
+    let first = places.next()?;
+    let (low, high) = places.fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
+    let bounds = Aabb3d { min: low, max: high };
+    // Far from the world's origin, places are rounded.
+    let Cloth { self_collision, self_distance, .. } = state.settings;
+    let distance = state.topology.self_distance(self_collision, self_distance);
+    let margin = distance + GAINED + 1e-6 * origin.abs().max_element();
+    (low.is_finite() && high.is_finite()).then(|| bounds.grow(Vec3A::splat(margin)))
+}

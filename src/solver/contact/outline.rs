@@ -1,0 +1,163 @@
+//! What stands out of a solid so much that it would poke through between the particles of a cloth: its edges and tips,
+//! and the inside of what is thin.
+
+use bevy::math::{
+    Vec3, Vec3A,
+    primitives::{Capsule3d, Cone, Cuboid, Cylinder, Sphere},
+};
+
+use super::{
+    solid::{Solid, TaperedCapsule},
+    surface::{Bounds, Places, Surface},
+};
+
+/// Points and edges with a distance around them.
+#[derive(Clone, Debug, Default)]
+pub struct Outline {
+    pub points: Vec<Vec3A>,
+    /// Distance around each point, m.
+    pub radii: Vec<f32>,
+    /// The edges, as triangles without an area.
+    pub surface: Surface,
+    /// Boxes around them, as thick as they are.
+    pub places: Places,
+}
+
+/// Corners of the polygon that stands for a rim. It lies within the rim by 0.5 % of its radius.
+const RIM: u32 = 32;
+
+impl Outline {
+    /// Follows `solid`, for cloth whose edges are no longer than `edge` (m), which keeps a distance of `distance` (m) and may
+    /// sink in by `sink` (m).
+    pub fn of(solid: &Solid, edge: f32, distance: f32, sink: f32) -> Self {
+        let mut outline = Drawing::default();
+        // How far a chord sinks into what is round.
+        let is_thin = |radius: f32| {
+            let round = radius + distance;
+            let depth = if round > edge / 2.0 { edge * edge / (8.0 * round) } else { edge / 2.0 };
+            depth > sink
+        };
+        let is_caught = |sine: f32| sine * edge / 2.0 > sink;
+        const RIGHT: f32 = core::f32::consts::FRAC_1_SQRT_2;
+        match *solid {
+            Solid::Sphere(Sphere { radius }) if is_thin(radius) => outline.bone([Vec3A::ZERO; 2], [radius; 2]),
+            Solid::Capsule(Capsule3d { radius, half_length }) if is_thin(radius) => {
+                outline.bone([-half_length, half_length].map(|y| Vec3A::Y * y), [radius; 2]);
+            }
+            Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length })
+                if is_thin(radius_top.min(radius_bottom)) =>
+            {
+                outline.bone([-half_length, half_length].map(|y| Vec3A::Y * y), [radius_bottom, radius_top]);
+            }
+            Solid::Cuboid(Cuboid { half_size }) if is_caught(RIGHT) => outline.cuboid(half_size.into()),
+            Solid::Cylinder(Cylinder { radius, half_height }) if is_caught(RIGHT) => {
+                outline.rim(radius, half_height);
+                outline.rim(radius, -half_height);
+                if is_thin(radius) && half_height > radius {
+                    let end = half_height - radius;
+                    outline.bone([-end, end].map(|y| Vec3A::Y * y), [radius; 2]);
+                }
+            }
+            Solid::Cone(Cone { radius, height }) if is_caught(RIGHT) => {
+                outline.rim(radius, -height / 2.0);
+                // The ball that touches side and base; the cone narrows from it to the tip.
+                let inner = radius * height / (radius + (radius * radius + height * height).sqrt());
+                outline.bone([Vec3A::Y * (inner - height / 2.0), Vec3A::Y * (height / 2.0)], [inner, 0.0]);
+            }
+            _ => {}
+        }
+        outline.finish()
+    }
+
+    /// Whether nothing stands out.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+}
+
+/// An outline as it is drawn.
+#[derive(Default)]
+struct Drawing {
+    points: Vec<Vec3A>,
+    radii: Vec<f32>,
+    edges: Vec<[u32; 3]>,
+}
+
+impl Drawing {
+    fn point(&mut self, place: Vec3A, radius: f32) -> u32 {
+        self.points.push(place);
+        self.radii.push(radius);
+        self.points.len() as u32 - 1
+    }
+
+    /// Two balls and what lies between them; one where the ends are the same.
+    fn bone(&mut self, [from, to]: [Vec3A; 2], [near, far]: [f32; 2]) {
+        let first = self.point(from, near);
+        let last = if from == to { first } else { self.point(to, far) };
+        self.edges.push([first, last, last]);
+    }
+
+    fn rim(&mut self, radius: f32, height: f32) {
+        let first = self.points.len() as u32;
+        for i in 0..RIM {
+            let (sine, cosine) = bevy::math::ops::sin_cos(i as f32 * core::f32::consts::TAU / RIM as f32);
+            self.point(Vec3A::new(radius * cosine, height, radius * sine), 0.0);
+        }
+        self.edges.extend((0..RIM).map(|i| [first + i, first + (i + 1) % RIM, first + i]));
+    }
+
+    fn cuboid(&mut self, half_size: Vec3A) {
+        let first = self.points.len() as u32;
+        for corner in 0..8 {
+            let side = |axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
+            self.point(half_size * Vec3A::new(side(0), side(1), side(2)), 0.0);
+        }
+        for corner in 0..8_u32 {
+            let upward = (0..3).filter(|axis| corner >> axis & 1 == 0);
+            self.edges.extend(upward.map(|axis| [first + corner, first + corner + (1 << axis), first + corner]));
+        }
+    }
+
+    fn finish(self) -> Outline {
+        let Self { points, radii, edges } = self;
+        if points.is_empty() {
+            return Outline::default();
+        }
+        let rest: Vec<Vec3> = points.iter().copied().map(Vec3::from).collect();
+        let surface = Surface::new(&rest, &edges);
+        let mut places = Places::default();
+        let ball = |i: u32| Bounds::around([points[i as usize]]).grown(radii[i as usize]);
+        let around = |[a, b, _]: [u32; 3]| ball(a).union(ball(b));
+        places.follow(&surface, around, None::<fn(_) -> _>);
+        Outline { points, radii, surface, places }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_outline_lies_within_its_solid() {
+        let solids = [
+            Solid::Sphere(Sphere::new(0.01)),
+            Solid::Capsule(Capsule3d::new(0.01, 0.5)),
+            Solid::TaperedCapsule(TaperedCapsule::new(0.01, 0.03, 0.3)),
+            Solid::Cuboid(Cuboid::new(0.2, 0.3, 0.4)),
+            Solid::Cylinder(Cylinder::new(0.01, 0.4)),
+            Solid::Cone(Cone::new(0.1, 0.4)),
+        ];
+        for solid in solids {
+            let outline = Outline::of(&solid, 0.1, 0.001, 0.0005);
+            assert!(!outline.is_empty(), "{solid:?}");
+            for (&point, radius) in outline.points.iter().zip(&outline.radii) {
+                assert!(solid.surface(point).distance < 1e-5 - radius, "{solid:?}: {point}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_round_enough_has_none() {
+        assert!(Outline::of(&Solid::Sphere(Sphere::new(0.3)), 0.022, 0.0, 0.0005).is_empty());
+    }
+}
