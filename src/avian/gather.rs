@@ -1,7 +1,7 @@
 //! Reads Avian's colliders.
 
 use avian3d::{
-    dynamics::rigid_body::{RigidBodyQuery, RigidBodyQueryReadOnlyItem},
+    dynamics::rigid_body::{RigidBodyQueryReadOnly, RigidBodyQueryReadOnlyItem},
     parry::shape::SharedShape,
     prelude::{
         Collider, ColliderDisabled, ColliderOf, ColliderTransform, CollisionLayers, DefaultFriction, Friction,
@@ -39,7 +39,7 @@ type IsMet = (Without<ColliderDisabled>, Without<Sensor>, Without<ClothCollider>
 /// Adds Avian's colliders to the obstacles of the coming step.
 pub(super) fn gather_colliders(
     colliders: Query<AvianCollider, IsMet>,
-    bodies: Query<(RigidBodyQuery, Has<RigidBodyDisabled>, Has<NotClothCollider>)>,
+    bodies: Query<(RigidBodyQueryReadOnly, Has<RigidBodyDisabled>, Has<NotClothCollider>)>,
     (settings, default_friction): (Res<ClothAvianSettings>, Option<Res<DefaultFriction>>),
     time: Res<Time>,
     mut bridge: ResMut<Bridge<SharedShape>>,

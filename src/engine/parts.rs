@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use bevy::{
     math::{Isometry3d, Vec3A, primitives::Capsule3d},
-    platform::{collections::HashMap, hash::FixedHasher},
+    platform::{
+        collections::{HashMap, HashSet},
+        hash::FixedHasher,
+    },
     prelude::*,
 };
 
@@ -44,7 +47,7 @@ impl Part {
             Shape::Solid(Solid::Cylinder(cylinder)) => is_part(cylinder.radius) && is_part(cylinder.half_height),
             Shape::Solid(Solid::Cone(cone)) => is_size(cone.radius) && is_size(cone.height),
             Shape::Solid(Solid::TaperedCapsule(_) | Solid::HalfSpace(_)) => true,
-            Shape::Mesh(mesh) => !mesh.mesh.triangles.is_empty() && mesh.mesh.points.iter().all(|p| p.is_finite()),
+            Shape::Mesh(mesh) => !mesh.mesh.triangles().is_empty() && mesh.mesh.points.iter().all(|p| p.is_finite()),
         };
         let is_placed = self.pose.translation.is_finite() && self.pose.rotation.is_finite();
         has_size && is_placed && self.rounding.is_finite() && self.rounding >= 0.0
@@ -76,10 +79,19 @@ pub(crate) fn mesh(points: impl IntoIterator<Item = Vec3>, triangles: &[[u32; 3]
         .collect();
     let number = |i: u32| numbers.get(i as usize).copied();
     let triangles = triangles.iter().filter_map(|&[a, b, c]| Some([number(a)?, number(b)?, number(c)?]));
-    let has_area = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
-    let triangles = triangles.filter(has_area).collect();
+    let has_area = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|i| welded[i as usize]);
+        (b - a).cross(c - a).length_squared() > 0.0
+    };
+    let mut seen = HashSet::new();
+    let is_new = |&[a, b, c]: &[u32; 3]| {
+        let mut corners = [a, b, c];
+        corners.sort_unstable();
+        seen.insert(corners)
+    };
+    let triangles: Vec<[u32; 3]> = triangles.filter(has_area).filter(is_new).collect();
     Part::new(Shape::Mesh(MeshShape {
-        mesh: Arc::new(TriangleMesh { points: welded, triangles, is_closed }),
+        mesh: Arc::new(TriangleMesh::new(welded, &triangles, is_closed)),
         deformed: None,
     }))
 }

@@ -69,7 +69,7 @@ fn distance(part: &Part, point: Vec3) -> f32 {
         Shape::Solid(solid) => solid.surface(local).distance,
         Shape::Mesh(mesh) => {
             let points = mesh.mesh.points.iter().map(|&p| p.into()).collect();
-            let mesh = SharedShape::new(TriMesh::new(points, mesh.mesh.triangles.clone()).unwrap());
+            let mesh = SharedShape::new(TriMesh::new(points, mesh.mesh.triangles().to_vec()).unwrap());
             mesh.project_local_point(local.into(), false).point.distance(local.into())
         }
     };
@@ -117,7 +117,7 @@ fn what_encloses_a_volume_faces_out_of_it() {
             let [a, b, c] = triangle.map(|i| mesh.points[i as usize]);
             a.dot(b.cross(c)) / 6.0
         };
-        let whole: f32 = mesh.triangles.iter().map(volume).sum();
+        let whole: f32 = mesh.triangles().iter().map(volume).sum();
         assert!(whole > 0.01, "{whole}");
     }
     assert_eq!(count, 3);
