@@ -14,6 +14,7 @@ mod actions;
 mod advice;
 mod aim;
 mod code;
+mod contact;
 mod control;
 #[cfg(feature = "debug")]
 mod debug;
@@ -190,6 +191,7 @@ fn show(ui: &mut Ui, model: &mut Model, memory: &Memory) {
         fabric::show(ui, model);
         springs::show(ui, model);
         solver::show(ui, model);
+        contact::show(ui, model);
     }
     surroundings::show_surroundings(ui, model);
     surroundings::show_wind(ui, model);

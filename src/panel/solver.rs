@@ -73,16 +73,6 @@ const SLACK: Knob = Knob::new(
      it tremble.",
 );
 
-const MARGIN: Knob = Knob::new(
-    "Contact margin",
-    "m",
-    (0.0, 0.05),
-    (0.0, 10.0),
-    "Distance kept from obstacles beyond the fabric's thickness, in mm. 2 to 20: more where triangles are large and \
-     obstacles poke through between their corners.",
-)
-.shown_as("mm", 1e3);
-
 const SOLVERS: [(ClothSolver, &str, &str); 3] = [
     (ClothSolver::Strands, "Strands", "Each thread solved exactly: the least stretch for the time. For games."),
     (ClothSolver::Xpbd, "XPBD", "Spring by spring: stable as well, and stretched more."),
@@ -115,7 +105,6 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
                 MAX_SUBSTEPS.show_count(ui, &mut cloth.max_substeps, differs("max_substeps"));
             }
         }
-        MARGIN.show(ui, &mut cloth.collision_margin, differs("collision_margin"));
         show_advice(ui, model);
     });
 }

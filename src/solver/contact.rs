@@ -16,6 +16,7 @@ pub mod mesh;
 pub mod solid;
 
 mod closest;
+mod inside;
 mod outline;
 pub(super) mod pair;
 mod search;

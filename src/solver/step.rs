@@ -143,7 +143,8 @@ impl<'a> Plan<'a> {
         }
         let is_near = contact::is_any_near(particles, ctx, dt);
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
-        let with_care = is_near || !is_tethered || !ctx.grabs.is_empty();
+        let touches = ctx.self_collision != SelfCollision::Off;
+        let with_care = is_near || touches || !is_tethered || !ctx.grabs.is_empty();
         let (wanted, levels) = ctx.effort.of_step(with_care, dt);
         let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
             Method::Strands => (u32::MAX, wanted, 1.0, levels),

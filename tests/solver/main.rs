@@ -13,6 +13,7 @@ mod instructions;
 mod lattices;
 mod levels;
 mod memory;
+mod meshes;
 mod rates;
 mod robustness;
 mod sheets;

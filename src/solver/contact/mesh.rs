@@ -20,6 +20,8 @@ pub struct TriangleMesh {
     pub(super) surface: Surface,
     /// Boxes around the triangles where the points are.
     pub(super) places: Places,
+    /// Those of a closed mesh.
+    pub(super) normals: PseudoNormals,
 }
 
 /// A triangle mesh as an obstacle within one step.
@@ -41,7 +43,11 @@ impl TriangleMesh {
         sharpen(&mut surface, &points, is_closed);
         let mut places = Places::default();
         places.follow(&surface, |triangle| Bounds::around(triangle.map(|i| points[i as usize])), None::<fn(_) -> _>);
-        Self { points, is_closed, surface, places }
+        let mut normals = PseudoNormals::default();
+        if is_closed {
+            normals.find(&surface, &points);
+        }
+        Self { points, is_closed, surface, places, normals }
     }
 
     /// Corners of each triangle.
@@ -118,7 +124,7 @@ fn sharpen(surface: &mut Surface, points: &[Vec3A], is_closed: bool) {
 
 /// Normals of points and edges for the question of which side of a closed mesh a place is on: that of the closest
 /// feature tells (Bærentzen and Aanæs, "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005).
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PseudoNormals {
     of_points: Vec<Vec3A>,
 }

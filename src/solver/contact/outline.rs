@@ -68,11 +68,6 @@ impl Outline {
         }
         outline.finish()
     }
-
-    /// Whether nothing stands out.
-    pub fn is_empty(&self) -> bool {
-        self.points.is_empty()
-    }
 }
 
 /// An outline as it is drawn.
@@ -149,7 +144,7 @@ mod tests {
         ];
         for solid in solids {
             let outline = Outline::of(&solid, 0.1, 0.001, 0.0005);
-            assert!(!outline.is_empty(), "{solid:?}");
+            assert!(!outline.points.is_empty(), "{solid:?}");
             for (&point, radius) in outline.points.iter().zip(&outline.radii) {
                 assert!(solid.surface(point).distance < 1e-5 - radius, "{solid:?}: {point}");
             }
@@ -158,6 +153,6 @@ mod tests {
 
     #[test]
     fn what_is_round_enough_has_none() {
-        assert!(Outline::of(&Solid::Sphere(Sphere::new(0.3)), 0.022, 0.0, 0.0005).is_empty());
+        assert!(Outline::of(&Solid::Sphere(Sphere::new(0.3)), 0.022, 0.0, 0.0005).points.is_empty());
     }
 }

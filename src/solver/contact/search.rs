@@ -12,16 +12,22 @@ use super::{
 pub struct Ways<'a> {
     /// Where they are, m.
     pub position: &'a [Vec3A],
-    /// How far they will come before the next search if nothing stops them, m.
+    /// How far they will come before the next search if nothing stops them, m. None for what stays.
     pub way: &'a [Vec3A],
 }
 
 impl Ways<'_> {
+    /// How far a point will come.
+    #[inline]
+    fn way(&self, point: usize) -> Vec3A {
+        self.way.get(point).copied().unwrap_or(Vec3A::ZERO)
+    }
+
     /// Box around the way of a triangle.
     #[inline]
     pub fn bounds(&self, triangle: [u32; 3]) -> Bounds {
         let [a, b, c] = triangle.map(|i| {
-            let (start, way) = (self.position[i as usize], self.way[i as usize]);
+            let (start, way) = (self.position[i as usize], self.way(i as usize));
             Bounds { low: start.min(start + way), high: start.max(start + way) }
         });
         a.union(b).union(c)
@@ -45,6 +51,14 @@ pub struct Side<'a> {
 }
 
 impl Side<'_> {
+    /// Box around the way of a point, as thick as it is.
+    #[inline]
+    fn way_of(&self, point: u32) -> Bounds {
+        let (start, way) = (self.ways.position[point as usize], self.ways.way(point as usize));
+        Bounds { low: start.min(start + way), high: start.max(start + way) }.grown(self.radius(point))
+    }
+
+    #[inline]
     fn radius(&self, point: u32) -> f32 {
         self.radii.get(point as usize).copied().unwrap_or(0.0)
     }
@@ -97,44 +111,54 @@ pub fn pairs_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Rea
     if is_same && triangle.iter().any(|corner| other.contains(corner)) && is_open(a, triangle, other) {
         return;
     }
+    // Boxes tell most features apart, at a fraction of the price of their distance.
+    let reached = reach.distance + reach.slack;
+    let ways = triangle.map(|corner| a.way_of(corner).grown(reached));
+    let other_ways = other.map(|corner| b.way_of(corner));
     if b.has_faces {
-        for (&corner, sharp) in triangle.iter().zip(mine.corners) {
-            if sharp > a.sharper_than && !(is_same && other.contains(&corner)) {
+        let face = other_ways[0].union(other_ways[1]).union(other_ways[2]);
+        for (k, &corner) in triangle.iter().enumerate() {
+            let is_met = mine.corners[k] > a.sharper_than && ways[k].meets(&face);
+            if is_met && !(is_same && other.contains(&corner)) {
                 let points = [corner, other[0], other[1], other[2]];
                 found_between(Features::PointFace, [a, b, b, b], points, reach, |f| found(Found { face: t, ..f }));
             }
         }
     }
     if a.has_faces {
-        for (&corner, sharp) in other.iter().zip(theirs.corners) {
-            if sharp > b.sharper_than && !(is_same && triangle.contains(&corner)) {
+        let face = ways[0].union(ways[1]).union(ways[2]);
+        for (k, &corner) in other.iter().enumerate() {
+            let is_met = theirs.corners[k] > b.sharper_than && other_ways[k].meets(&face);
+            if is_met && !(is_same && triangle.contains(&corner)) {
                 let points = [corner, triangle[0], triangle[1], triangle[2]];
                 let first = |f| found(Found { is_first_of_a: false, face: s, ..f });
                 found_between(Features::PointFace, [b, a, a, a], points, reach, first);
             }
         }
     }
-    for ([p, q], sharp) in edges_of(triangle).into_iter().zip(mine.edges) {
-        if sharp <= a.sharper_than {
+    for (i, [p, q]) in edges_of(triangle).into_iter().enumerate() {
+        if mine.edges[i] <= a.sharper_than {
             continue;
         }
-        for ([u, v], sharp) in edges_of(other).into_iter().zip(theirs.edges) {
-            if sharp > b.sharper_than && !(is_same && (p == u || p == v || q == u || q == v)) {
+        let edge = ways[i].union(ways[(i + 1) % 3]);
+        for (k, [u, v]) in edges_of(other).into_iter().enumerate() {
+            let is_met = theirs.edges[k] > b.sharper_than && edge.meets(&other_ways[k].union(other_ways[(k + 1) % 3]));
+            if is_met && !(is_same && (p == u || p == v || q == u || q == v)) {
                 found_between(Features::EdgeEdge, [a, a, b, b], [p, q, u, v], reach, &mut found);
             }
         }
     }
 }
 
-/// Shows the pairs of corners of triangle `s` of `a` and triangle `t` of `b` that may touch as balls.
-pub fn balls_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Reach, mut found: impl FnMut(Found)) {
-    for (corner, sharp) in a.surface.triangles[s].into_iter().zip(a.surface.owned[s].corners) {
-        if sharp <= a.sharper_than {
-            continue;
-        }
-        for (other, sharp) in b.surface.triangles[t].into_iter().zip(b.surface.owned[t].corners) {
-            if sharp > b.sharper_than && !(reach.rest.is_some() && corner == other) {
-                found_between(Features::PointPoint, [a, b, b, b], [corner, other, other, other], reach, &mut found);
+/// Shows the pairs of points of leaf `p` of `a` and leaf `q` of `b` that may touch as balls.
+pub fn balls_between((a, p): (&Side, u32), (b, q): (&Side, u32), reach: &Reach, mut found: impl FnMut(Found)) {
+    let is_one_leaf = reach.rest.is_some() && p == q;
+    for &point in a.surface.points_of_leaf(p) {
+        let way = a.way_of(point).grown(reach.distance + reach.slack);
+        for &other in b.surface.points_of_leaf(q) {
+            // Of a leaf with itself, each two points once.
+            if !(is_one_leaf && point >= other) && way.meets(&b.way_of(other)) {
+                found_between(Features::PointPoint, [a, b, b, b], [point, other, other, other], reach, &mut found);
             }
         }
     }
@@ -158,7 +182,7 @@ fn is_open(side: &Side, triangle: [u32; 3], other: [u32; 3]) -> bool {
 fn found_between(features: Features, sides: [&Side; 4], points: [u32; 4], reach: &Reach, found: impl FnOnce(Found)) {
     let of = |i: usize| points[i] as usize;
     let places: [Vec3A; 4] = core::array::from_fn(|i| sides[i].ways.position[of(i)]);
-    let [w0, w1, w2, w3] = core::array::from_fn(|i| sides[i].ways.way[of(i)]);
+    let [w0, w1, w2, w3] = core::array::from_fn(|i| sides[i].ways.way(of(i)));
     let (distance, taper) = match features {
         Features::PointFace | Features::PointPoint => (reach.distance + sides[0].radius(points[0]), 0.0),
         Features::EdgeEdge => {

@@ -39,6 +39,9 @@ pub struct Surface {
     pub mean_edge: f32,
     /// Length of the longest edge at rest, m.
     pub longest_edge: f32,
+    /// Points that belong to the triangles of each leaf, leaf after leaf; and where those of each end.
+    points: Vec<u32>,
+    points_end: Vec<u32>,
     /// Leaves that share a corner with each leaf, in their order, leaf after leaf; and where those of each end.
     beside: Vec<u32>,
     beside_end: Vec<u32>,
@@ -72,7 +75,7 @@ impl Surface {
         surface
     }
 
-    /// Finds which leaves share a corner.
+    /// Finds which leaves share a corner, and which points belong to each.
     fn find_neighbours(&mut self, point_count: usize) {
         let mut leaves_at: Vec<Vec<u32>> = vec![Vec::new(); point_count];
         let leaves = self.leaves as u32..2 * self.leaves as u32;
@@ -91,14 +94,29 @@ impl Surface {
             beside.dedup();
             self.beside.extend(beside);
             self.beside_end.push(self.beside.len() as u32);
+            for triangle in self.of_leaf(leaf) {
+                let owned = self.triangles[triangle].into_iter().zip(self.owned[triangle].corners);
+                self.points.extend(owned.filter(|&(_, sharp)| sharp > 0.0).map(|(corner, _)| corner));
+            }
+            self.points_end.push(self.points.len() as u32);
         }
     }
 
     /// Whether two leaves share a corner.
     fn are_beside(&self, leaf: u32, other: u32) -> bool {
+        self.part(&self.beside, &self.beside_end, leaf).binary_search(&other).is_ok()
+    }
+
+    /// The points that belong to the triangles of a leaf.
+    pub fn points_of_leaf(&self, leaf: u32) -> &[u32] {
+        self.part(&self.points, &self.points_end, leaf)
+    }
+
+    /// The part of a list that belongs to a leaf.
+    fn part<'a>(&self, list: &'a [u32], ends: &[u32], leaf: u32) -> &'a [u32] {
         let i = leaf as usize - self.leaves;
-        let start = if i == 0 { 0 } else { self.beside_end[i - 1] as usize };
-        self.beside[start..self.beside_end[i] as usize].binary_search(&other).is_ok()
+        let start = if i == 0 { 0 } else { ends[i - 1] as usize };
+        &list[start..ends[i] as usize]
     }
 
     /// All edges, once each.

@@ -8,16 +8,18 @@ use core::ops::Range;
 use bevy::math::{Isometry3d, Vec3A};
 
 use super::{
-    Obstacle, Shape,
-    mesh::{MeshShape, PseudoNormals},
-    outline::Outline,
-    pair::{Features, Pair, Points},
-    search::{self, Found, Reach, Side, Ways},
-    solid::Solid,
-    surface::{Bounds, Places, Surface, Walk},
+    Shape,
+    mesh::MeshShape,
+    pair::{Pair, Points},
+    search::{self, Reach, Side, Ways},
+    surface::{Places, Surface, Walk},
     tangle::{self, Tangle},
 };
 use crate::solver::{Lanes, SelfCollision, StepContext, step::Running};
+
+mod obstacle;
+
+use obstacle::{Approach, AtObstacle, Fixed};
 
 /// How far particles may come off their way before there is another search: this share of the mean edge.
 const SLACK: f32 = 0.2;
@@ -47,6 +49,11 @@ impl Running<'_> {
     /// How deep triangles may sink into obstacles, m.
     fn sink(&self) -> f32 {
         self.ctx.margin.max(SINK)
+    }
+
+    fn is_fixed(&self, particle: u32) -> bool {
+        let lanes = &self.scratch.lanes;
+        lanes.inverse_mass(lanes.order.slot(particle)) == 0.0
     }
 
     fn surface(&self) -> &Surface {
@@ -79,39 +86,7 @@ pub struct Touch {
     is_off: bool,
 }
 
-/// A point of an obstacle.
-#[derive(Clone, Copy, Debug)]
-struct Fixed {
-    cloth: u32,
-    obstacle: u32,
-    point: u32,
-}
-
-/// What a search at one obstacle needs.
-#[derive(Clone, Debug, Default)]
-struct AtObstacle {
-    position: Vec<Vec3A>,
-    way: Vec<Vec3A>,
-    still: Vec<Vec3A>,
-    places: Places,
-    deformed: Places,
-    normals: PseudoNormals,
-    found: Vec<Found>,
-    /// Distance of each particle to the nearest face, m.
-    nearest: Vec<f32>,
-    /// Number of each of the obstacle's points among all.
-    number: Vec<u32>,
-    /// Of each cloth's obstacles.
-    outlines: Vec<Vec<(Solid, [f32; 3], Outline)>>,
-    obstacle_way: Vec<Vec3A>,
-}
-
 impl Touch {
-    /// Number of pairs that may touch.
-    pub fn pair_count(&self) -> usize {
-        self.pairs.len()
-    }
-
     /// Begins a step: nothing is known yet.
     pub fn begin(&mut self) {
         self.is_off = true;
@@ -135,8 +110,12 @@ impl Touch {
             self.search_cloths(cloths);
         }
         for (number, cloth) in cloths.iter().enumerate() {
-            for (i, obstacle) in cloth.ctx.obstacles.iter().enumerate() {
-                self.search_at(cloth, number, i, obstacle, now);
+            let particles = self.first[number] as usize..self.first[number + 1] as usize;
+            let ways = Ways { position: &self.start[particles.clone()], way: &self.way[particles] };
+            let (first, total) = (self.first[number], self.start.len());
+            let at = Approach { cloth, number, first, total, ways, now };
+            for i in 0..cloth.ctx.obstacles.len() {
+                self.at_obstacle.search(&at, i, &mut self.walk, &mut self.fixed, &mut self.pairs);
             }
         }
         let count = self.start.len() + self.fixed.len();
@@ -236,14 +215,14 @@ impl Touch {
             rest: (i == j).then_some(&*cloths[i].topology.rest),
         };
         for &(p, q) in &*leaves {
+            if mode == SelfCollision::Particles {
+                search::balls_between((&a, p), (&b, q), &reach, |found| pairs.push(found.pair));
+                continue;
+            }
             for s in a.surface.of_leaf(p) {
                 for t in b.surface.of_leaf(q) {
                     // Of a leaf with itself, each two triangles once.
                     if i == j && p == q && s >= t || !a.places.of_triangles[s].meets(&b.places.of_triangles[t]) {
-                        continue;
-                    }
-                    if mode == SelfCollision::Particles {
-                        search::balls_between((&a, s), (&b, t), &reach, |found| pairs.push(found.pair));
                         continue;
                     }
                     let (one, other) = (a.surface.triangles[s], b.surface.triangles[t]);
@@ -264,174 +243,6 @@ impl Touch {
         // What is tangled finds out by the tangle's own way.
         if !tangles.is_empty() {
             pairs.retain(|pair| pair.points.iter().filter(|&&i| is_tangled[i as usize]).count() < 2);
-        }
-    }
-
-    /// Looks for pairs of a cloth and an obstacle.
-    fn search_at(&mut self, cloth: &Running, number: usize, i: usize, obstacle: &Obstacle, now: f32) {
-        let Self { first, start, way, slack, at_obstacle, walk, leaves, pairs, fixed, .. } = self;
-        let surface = cloth.surface();
-        let distance = cloth.ctx.contact_distance();
-        let AtObstacle {
-            position,
-            way: local_way,
-            still,
-            places,
-            deformed,
-            normals,
-            found,
-            nearest,
-            number: numbers,
-            outlines,
-            obstacle_way,
-        } = at_obstacle;
-        let (points, other, other_places, radii, has_faces, is_closed, edges): (
-            &[Vec3A],
-            &Surface,
-            &Places,
-            &[f32],
-            bool,
-            bool,
-            f32,
-        ) = match &obstacle.shape {
-            Shape::Solid(solid) => {
-                let needs = [surface.longest_edge, distance, cloth.sink()];
-                if outlines.len() <= number {
-                    outlines.resize_with(number + 1, Vec::new);
-                }
-                let outlines = &mut outlines[number];
-                // As many as there are obstacles; each is drawn anew only when it changes.
-                if outlines.len() <= i {
-                    outlines.resize_with(i + 1, || (*solid, [f32::NAN; 3], Outline::default()));
-                }
-                let (drawn, met, outline) = &mut outlines[i];
-                if *drawn != *solid || *met != needs {
-                    (*drawn, *met) = (*solid, needs);
-                    *outline = Outline::of(solid, needs[0], needs[1], needs[2]);
-                }
-                if outline.is_empty() {
-                    return;
-                }
-                (&outline.points, &outline.surface, &outline.places, &outline.radii, false, false, 0.0)
-            }
-            Shape::Mesh(MeshShape { mesh, deformed: None }) => {
-                let sharper_than = 2.0 * cloth.sink() / surface.longest_edge;
-                (&mesh.points, &mesh.surface, &mesh.places, &[], true, mesh.is_closed, sharper_than)
-            }
-            Shape::Mesh(MeshShape { mesh, deformed: Some([from, to]) }) => {
-                still.clear();
-                still.extend(from.iter().zip(&**to).map(|(&p, &q)| p.lerp(q, now)));
-                let ends = |triangle: [u32; 3]| {
-                    let ways = triangle.map(|i| Bounds::around([still[i as usize], to[i as usize]]));
-                    ways[0].union(ways[1]).union(ways[2])
-                };
-                deformed.follow(&mesh.surface, ends, None::<fn(_) -> _>);
-                let sharper_than = 2.0 * cloth.sink() / surface.longest_edge;
-                (&still[..], &mesh.surface, &*deformed, &[], true, mesh.is_closed, sharper_than)
-            }
-        };
-        // In the obstacle's own frame it stays, and the cloth's way is that past it.
-        let particles = first[number] as usize..first[number + 1] as usize;
-        let (to_local, to_local_end) = (obstacle.pose(now).inverse(), obstacle.end.inverse());
-        position.clear();
-        local_way.clear();
-        for (&start, &way) in start[particles.clone()].iter().zip(&way[particles.clone()]) {
-            let start = start - cloth.offset;
-            let place = to_local.transform_point(start);
-            position.push(place);
-            local_way.push(to_local_end.transform_point(start + way) - place);
-        }
-        let ways = Ways { position: &*position, way: &*local_way };
-        let slack = slack[particles.start];
-        let reached = distance + slack;
-        let whole =
-            Bounds::around(position.iter().copied().chain(position.iter().zip(&*local_way).map(|(&p, &w)| p + w)));
-        if !whole.grown(reached).meets(&other_places.whole()) {
-            return;
-        }
-        places.follow(surface, |triangle| ways.bounds(triangle).grown(reached), None::<fn(_) -> _>);
-        leaves.clear();
-        walk.between((surface, places), (other, other_places), |p, q| leaves.push((p, q)));
-        if leaves.is_empty() {
-            return;
-        }
-        let deformation: Option<&[Vec3A]> = match &obstacle.shape {
-            Shape::Mesh(MeshShape { deformed: Some([_, to]), .. }) => Some(to),
-            _ => None,
-        };
-        obstacle_way.clear();
-        match deformation {
-            Some(to) => obstacle_way.extend(to.iter().zip(points).map(|(&q, &p)| q - p)),
-            None => obstacle_way.resize(points.len(), Vec3A::ZERO),
-        }
-        let a = Side { surface, places, ways, first: first[number], sharper_than: 0.0, has_faces: true, radii: &[] };
-        let b = Side {
-            surface: other,
-            places: other_places,
-            ways: Ways { position: points, way: obstacle_way },
-            first: 0,
-            sharper_than: edges,
-            has_faces,
-            radii,
-        };
-        let friction = cloth.ctx.material.friction * obstacle.friction;
-        let reach = Reach { distance, slack, friction, rest: None };
-        found.clear();
-        nearest.clear();
-        nearest.resize(position.len(), f32::INFINITY);
-        for &(p, q) in &*leaves {
-            for s in surface.of_leaf(p) {
-                for t in other.of_leaf(q) {
-                    if places.of_triangles[s].meets(&other_places.of_triangles[t]) {
-                        search::pairs_between((&a, s), (&b, t), &reach, |one| {
-                            if one.is_of_face() {
-                                let nearest = &mut nearest[(one.pair.points[0] - a.first) as usize];
-                                *nearest = nearest.min(one.length);
-                            }
-                            found.push(one);
-                        });
-                    }
-                }
-            }
-        }
-        if has_faces && is_closed {
-            normals.find(other, points);
-        }
-        numbers.clear();
-        numbers.resize(points.len(), u32::MAX);
-        let to_world = obstacle.pose(now);
-        for one in &*found {
-            let mut pair = one.pair;
-            if one.is_of_face() {
-                let nearest = nearest[(pair.points[0] - a.first) as usize];
-                // Farther faces count where the particle may slide to them.
-                if one.length > nearest + one.approach {
-                    continue;
-                }
-                if is_closed && is_inside(one, other, points, normals) {
-                    if one.length > nearest {
-                        continue;
-                    }
-                    (pair.normal, pair.gap) = (-pair.normal, -pair.gap);
-                }
-            }
-            // The cloth's features come first but where a corner of the obstacle meets a face.
-            let of_obstacle = match (pair.features, one.is_first_of_a) {
-                (Features::PointFace, true) => 1..4,
-                (Features::PointFace, false) => 0..1,
-                (Features::EdgeEdge, _) => 2..4,
-                (Features::PointPoint, _) => 1..4,
-            };
-            for k in of_obstacle {
-                let number = &mut numbers[pair.points[k] as usize];
-                if *number == u32::MAX {
-                    *number = (start.len() + fixed.len()) as u32;
-                    fixed.push(Fixed { cloth: a.first, obstacle: i as u32, point: pair.points[k] });
-                }
-                pair.points[k] = *number;
-            }
-            pair.normal = to_world.rotation * pair.normal;
-            pairs.push(pair);
         }
     }
 
@@ -493,8 +304,7 @@ impl Touch {
         let count = self.start.len();
         let mut latest: Option<(u32, u32, [Isometry3d; 2])> = None;
         for (k, fixed) in self.fixed.iter().enumerate() {
-            let number = self.first.binary_search(&fixed.cloth).unwrap_or(0);
-            let cloth = &cloths[number];
+            let cloth = &cloths[fixed.cloth as usize];
             let obstacle = &cloth.ctx.obstacles[fixed.obstacle as usize];
             let poses = match latest {
                 Some((cloth, obstacle, poses)) if (cloth, obstacle) == (fixed.cloth, fixed.obstacle) => poses,
@@ -503,7 +313,7 @@ impl Touch {
             latest = Some((fixed.cloth, fixed.obstacle, poses));
             let point = fixed.point as usize;
             let local = |t: f32| match &obstacle.shape {
-                Shape::Solid(_) => self.at_obstacle.outlines[number][fixed.obstacle as usize].2.points[point],
+                Shape::Solid(_) => self.at_obstacle.outline(fixed).points[point],
                 Shape::Mesh(MeshShape { mesh, deformed: None }) => mesh.points[point],
                 Shape::Mesh(MeshShape { deformed: Some([from, to]), .. }) => from[point].lerp(to[point], t),
             };
@@ -511,13 +321,4 @@ impl Touch {
             self.points.position[count + k] = poses[1].transform_point(local(span.end)) + cloth.offset;
         }
     }
-}
-
-/// Whether the particle of a pair is behind the face, by the normal of the closest place.
-fn is_inside(found: &Found, surface: &Surface, points: &[Vec3A], normals: &PseudoNormals) -> bool {
-    let triangle = surface.triangles[found.face];
-    let [a, b, c] = triangle.map(|i| points[i as usize]);
-    let weights = [1, 2, 3].map(|i| -found.nearest.weights[i]);
-    let normal = normals.at(triangle, (b - a).cross(c - a), weights);
-    found.nearest.between.dot(normal) < 0.0
 }

@@ -1,0 +1,306 @@
+//! The search for pairs of a cloth and one obstacle.
+
+use bevy::math::Vec3A;
+
+use super::SLACK;
+use crate::solver::{
+    contact::{
+        Obstacle, Shape,
+        inside::{self, Whereabouts},
+        mesh::{MeshShape, PseudoNormals},
+        outline::Outline,
+        pair::{Features, Pair},
+        search::{self, Found, Reach, Side, Ways},
+        solid::Solid,
+        surface::{Bounds, Places, Surface, Walk},
+    },
+    step::Running,
+};
+
+/// A cloth on its way.
+pub struct Approach<'a> {
+    pub cloth: &'a Running<'a>,
+    /// Its number among those that are stepped together.
+    pub number: usize,
+    /// Number of its first particle, and of all particles.
+    pub first: u32,
+    pub total: usize,
+    pub ways: Ways<'a>,
+    /// Share of the step that is over.
+    pub now: f32,
+}
+
+/// A point of an obstacle.
+#[derive(Clone, Copy, Debug)]
+pub struct Fixed {
+    /// Number of the cloth, and of the obstacle among those of that cloth.
+    pub cloth: u32,
+    pub obstacle: u32,
+    pub point: u32,
+}
+
+/// What it takes to search at one obstacle after the other.
+#[derive(Clone, Debug, Default)]
+pub struct AtObstacle {
+    /// The cloth in the obstacle's frame.
+    position: Vec<Vec3A>,
+    way: Vec<Vec3A>,
+    places: Places,
+    leaves: Vec<(u32, u32)>,
+    found: Vec<Found>,
+    /// Distance of each particle to the nearest face, m.
+    nearest: Vec<f32>,
+    whereabouts: Vec<Whereabouts>,
+    /// Number of each of the obstacle's points among all.
+    number: Vec<u32>,
+    deformed: Deformed,
+    /// Outlines of the solids among each cloth's obstacles, with what they were drawn for.
+    outlines: Vec<Vec<(Solid, [f32; 3], Outline)>>,
+}
+
+/// A mesh whose points move within its frame.
+#[derive(Clone, Debug, Default)]
+struct Deformed {
+    points: Vec<Vec3A>,
+    way: Vec<Vec3A>,
+    places: Places,
+    normals: PseudoNormals,
+}
+
+impl Deformed {
+    /// Follows a mesh of which the share `now` of the way is over.
+    fn follow(&mut self, surface: &Surface, from: &[Vec3A], to: &[Vec3A], now: f32, is_closed: bool) {
+        self.points.clear();
+        self.points.extend(from.iter().zip(to).map(|(&p, &q)| p.lerp(q, now)));
+        self.way.clear();
+        self.way.extend(to.iter().zip(&self.points).map(|(&q, &p)| q - p));
+        let ways = Ways { position: &self.points, way: &self.way };
+        self.places.follow(surface, |triangle| ways.bounds(triangle), None::<fn(_) -> _>);
+        if is_closed {
+            self.normals.find(surface, &self.points);
+        }
+    }
+}
+
+/// An obstacle as the search sees it, in its own frame.
+#[derive(Clone, Copy)]
+struct Target<'a> {
+    points: &'a [Vec3A],
+    surface: &'a Surface,
+    places: &'a Places,
+    radii: &'a [f32],
+    has_faces: bool,
+    /// Those of a closed mesh.
+    normals: Option<&'a PseudoNormals>,
+    /// How far the points will come, where they move.
+    way: Option<&'a [Vec3A]>,
+}
+
+impl AtObstacle {
+    /// The outline that a point is of.
+    pub fn outline(&self, fixed: &Fixed) -> &Outline {
+        &self.outlines[fixed.cloth as usize][fixed.obstacle as usize].2
+    }
+
+    /// Adds the pairs of a cloth and obstacle `i` of it.
+    pub fn search(&mut self, at: &Approach, i: usize, walk: &mut Walk, fixed: &mut Vec<Fixed>, pairs: &mut Vec<Pair>) {
+        let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
+        let surface = cloth.surface();
+        let distance = cloth.ctx.contact_distance();
+        if let Shape::Solid(solid) = &obstacle.shape {
+            draw(&mut self.outlines, at.number, i, solid, [surface.longest_edge, distance, cloth.sink()]);
+        }
+        let Self { position, way, places, leaves, found, nearest, whereabouts, number, deformed, outlines } = self;
+        let Some(target) = target(obstacle, at.now, deformed, || &outlines[at.number][i].2) else { return };
+        // In the obstacle's own frame it stays, and the cloth's way is that past it.
+        let reached = distance + SLACK * surface.mean_edge;
+        let bounds = to_frame(at, obstacle, position, way).grown(reached);
+        if !bounds.meets(&target.places.whole()) {
+            return;
+        }
+        let ways = Ways { position, way };
+        places.follow(surface, |triangle| ways.bounds(triangle).grown(reached), None::<fn(_) -> _>);
+        leaves.clear();
+        walk.between((surface, places), (target.surface, target.places), |p, q| leaves.push((p, q)));
+        let a = Side { surface, places, ways, first: at.first, sharper_than: 0.0, has_faces: true, radii: &[] };
+        let still = Ways { position: target.points, way: target.way.unwrap_or(&[]) };
+        let b = Side {
+            surface: target.surface,
+            places: target.places,
+            ways: still,
+            first: 0,
+            sharper_than: if target.has_faces { 2.0 * cloth.sink() / surface.longest_edge } else { 0.0 },
+            has_faces: target.has_faces,
+            radii: target.radii,
+        };
+        let friction = cloth.ctx.material.friction * obstacle.friction;
+        let reach = Reach { distance, slack: SLACK * surface.mean_edge, friction, rest: None };
+        find(&a, &b, &reach, leaves, found, nearest);
+        whereabouts.clear();
+        if let Some(normals) = target.normals {
+            whereabouts.resize(position.len(), Whereabouts::Unknown);
+            for one in found.iter().filter(|one| one.is_of_face()) {
+                let particle = (one.pair.points[0] - at.first) as usize;
+                if one.length <= nearest[particle] {
+                    whereabouts[particle] = whereabouts_of(one, &target, normals);
+                }
+            }
+            let whole = target.places.whole();
+            for (place, whereabouts) in position.iter().zip(&mut *whereabouts) {
+                if *whereabouts == Whereabouts::Unknown && !whole.meets(&Bounds::around([*place])) {
+                    *whereabouts = Whereabouts::Outside;
+                }
+            }
+            inside::find_out(whereabouts, position, surface, (target.surface, target.places, target.points));
+        }
+        let is_inside = |particle: u32| whereabouts.get(particle as usize) == Some(&Whereabouts::Inside);
+        number.clear();
+        number.resize(target.points.len(), u32::MAX);
+        let to_world = obstacle.pose(at.now).rotation;
+        let mut add = |mut pair: Pair, of_obstacle: core::ops::Range<usize>| {
+            for k in of_obstacle {
+                let point = pair.points[k];
+                let number = &mut number[point as usize];
+                if *number == u32::MAX {
+                    *number = (at.total + fixed.len()) as u32;
+                    fixed.push(Fixed { cloth: at.number as u32, obstacle: i as u32, point });
+                }
+                pair.points[k] = *number;
+            }
+            pair.normal = to_world * pair.normal;
+            pairs.push(pair);
+        };
+        for one in &*found {
+            let mut pair = one.pair;
+            // The cloth's features come first but where a corner of the obstacle meets a face.
+            let of_obstacle = match (pair.features, one.is_first_of_a) {
+                (Features::PointFace, false) => 0..1,
+                (Features::EdgeEdge, _) => 2..4,
+                (Features::PointFace | Features::PointPoint, _) => 1..4,
+            };
+            let of_cloth = (0..4).filter(|k| !of_obstacle.contains(k));
+            let has_inside = of_cloth.into_iter().any(|k| is_inside(pair.points[k] - at.first));
+            if one.is_of_face() {
+                let nearest = nearest[(pair.points[0] - at.first) as usize];
+                // Farther faces count where the particle may slide to them; out of the inside, the nearest.
+                if one.length > nearest + one.approach || has_inside && one.length > nearest {
+                    continue;
+                }
+                if has_inside {
+                    (pair.normal, pair.gap) = (-pair.normal, -pair.gap);
+                }
+            } else if has_inside {
+                // It is on its way out.
+                continue;
+            }
+            add(pair, of_obstacle);
+        }
+        // Deep inside, nothing was near.
+        for particle in (0..position.len() as u32).filter(|&particle| is_inside(particle)) {
+            let place = position[particle as usize];
+            if nearest[particle as usize] < f32::INFINITY || cloth.is_fixed(particle) {
+                continue;
+            }
+            let near = inside::nearest(place, target.surface, target.places, target.points);
+            let Some((triangle, weights)) = near else { continue };
+            let [a, b, c] = target.surface.triangles[triangle];
+            let [p, q, r] = [a, b, c].map(|k| target.points[k as usize]);
+            let out = p * weights.x + q * weights.y + r * weights.z - place;
+            let (normal, depth) = out.normalize_and_length();
+            let features = Features::PointFace;
+            let points = [at.first + particle, a, b, c];
+            add(Pair { features, points, distance, taper: 0.0, friction, gap: -depth, normal }, 1..4);
+        }
+    }
+}
+
+/// Draws the outline of obstacle `i` of a cloth, where it isn't drawn yet for what the cloth `needs`.
+fn draw(outlines: &mut Vec<Vec<(Solid, [f32; 3], Outline)>>, cloth: usize, i: usize, solid: &Solid, needs: [f32; 3]) {
+    if outlines.len() <= cloth {
+        outlines.resize_with(cloth + 1, Vec::new);
+    }
+    let outlines = &mut outlines[cloth];
+    if outlines.len() <= i {
+        outlines.resize_with(i + 1, || (*solid, [f32::NAN; 3], Outline::default()));
+    }
+    let (drawn, met, outline) = &mut outlines[i];
+    if *drawn != *solid || *met != needs {
+        (*drawn, *met, *outline) = (*solid, needs, Outline::of(solid, needs[0], needs[1], needs[2]));
+    }
+}
+
+/// An obstacle where it is when the share `now` of the step is over. None where nothing of it is sharp.
+fn target<'a>(
+    obstacle: &'a Obstacle,
+    now: f32,
+    deformed: &'a mut Deformed,
+    outline: impl FnOnce() -> &'a Outline,
+) -> Option<Target<'a>> {
+    match &obstacle.shape {
+        Shape::Solid(_) => {
+            let Outline { points, radii, surface, places } = outline();
+            let target = Target { points, surface, places, radii, has_faces: false, normals: None, way: None };
+            (!points.is_empty()).then_some(target)
+        }
+        Shape::Mesh(MeshShape { mesh, deformed: None }) => {
+            let normals = mesh.is_closed.then_some(&mesh.normals);
+            let (points, surface, places) = (&mesh.points, &mesh.surface, &mesh.places);
+            Some(Target { points, surface, places, radii: &[], has_faces: true, normals, way: None })
+        }
+        Shape::Mesh(MeshShape { mesh, deformed: Some([from, to]) }) => {
+            deformed.follow(&mesh.surface, from, to, now, mesh.is_closed);
+            let Deformed { points, way, places, normals } = deformed;
+            let normals = mesh.is_closed.then_some(&*normals);
+            let surface = &mesh.surface;
+            Some(Target { points, surface, places, radii: &[], has_faces: true, normals, way: Some(way) })
+        }
+    }
+}
+
+/// Takes the cloth's ways into the obstacle's frame, and returns the box around them.
+fn to_frame(at: &Approach, obstacle: &Obstacle, position: &mut Vec<Vec3A>, way: &mut Vec<Vec3A>) -> Bounds {
+    let (now, end) = (obstacle.pose(at.now).inverse(), obstacle.end.inverse());
+    position.clear();
+    way.clear();
+    let mut bounds = Bounds::NOTHING;
+    for (&start, &far) in at.ways.position.iter().zip(at.ways.way) {
+        let start = start - at.cloth.offset;
+        let (from, to) = (now.transform_point(start), end.transform_point(start + far));
+        position.push(from);
+        way.push(to - from);
+        bounds = bounds.union(Bounds { low: from.min(to), high: from.max(to) });
+    }
+    bounds
+}
+
+/// Finds pairs in leaves that are near, and how far each particle is from the nearest face.
+fn find(a: &Side, b: &Side, reach: &Reach, leaves: &[(u32, u32)], found: &mut Vec<Found>, nearest: &mut Vec<f32>) {
+    found.clear();
+    nearest.clear();
+    nearest.resize(a.ways.position.len(), f32::INFINITY);
+    for &(p, q) in leaves {
+        for s in a.surface.of_leaf(p) {
+            for t in b.surface.of_leaf(q) {
+                if !a.places.of_triangles[s].meets(&b.places.of_triangles[t]) {
+                    continue;
+                }
+                search::pairs_between((a, s), (b, t), reach, |one| {
+                    if one.is_of_face() {
+                        let nearest = &mut nearest[(one.pair.points[0] - a.first) as usize];
+                        *nearest = nearest.min(one.length);
+                    }
+                    found.push(one);
+                });
+            }
+        }
+    }
+}
+
+/// On which side of its nearest face a particle is, by the normal of the closest place.
+fn whereabouts_of(found: &Found, target: &Target, normals: &PseudoNormals) -> Whereabouts {
+    let triangle = target.surface.triangles[found.face];
+    let [a, b, c] = triangle.map(|i| target.points[i as usize]);
+    let weights = [1, 2, 3].map(|i| -found.nearest.weights[i]);
+    let normal = normals.at(triangle, (b - a).cross(c - a), weights);
+    if found.nearest.between.dot(normal) < 0.0 { Whereabouts::Inside } else { Whereabouts::Outside }
+}
