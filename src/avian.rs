@@ -12,6 +12,7 @@ use crate::{
 };
 
 mod gather;
+mod mount;
 mod push;
 #[expect(clippy::duplicate_mod, reason = "each engine has a parry of its own, with the same shapes")]
 #[path = "engine/shapes.rs"]
@@ -70,7 +71,7 @@ impl Plugin for ClothAvianPlugin {
             warn!("ClothAvianPlugin can't do its work: it needs Avian's PhysicsPlugins; add them to the app");
             return;
         }
-        let systems = (gather::gather_colliders.into_configs(), push::push_bodies.into_configs());
+        let systems = ((gather::gather_colliders, mount::mount_pins).chain(), push::push_bodies.into_configs());
         schedule::bridge(app, "ClothAvianPlugin", Engine::Avian, PhysicsSystems::Last, systems);
     }
 }

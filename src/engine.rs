@@ -8,12 +8,14 @@ use bevy::{math::Isometry3d, prelude::*};
 use crate::{collider::Obstacles, solver::Obstacle};
 
 mod bodies;
+mod mounts;
 mod parts;
 mod pushes;
 
 pub(crate) use bodies::{Bodies, Dynamic, Mover};
+pub(crate) use mounts::{mount_pins, note_carriers, untie_mounted};
 pub(crate) use parts::{Part, Shapes, capsule, mesh};
-pub(crate) use pushes::{Moved, Pushes, collect_pushes};
+pub(crate) use pushes::{Pushes, carry, collect_pushes, pushed};
 
 /// Takes a collider of a physics engine, or all of a rigid body's, out of what cloth meets. A collider with a
 /// [`ClothCollider`](crate::prelude::ClothCollider) of its own doesn't need it: that one counts instead.
@@ -96,6 +98,5 @@ impl<S: Clone + Send + Sync + 'static> Bridge<S> {
             }));
         }
         self.shapes.end();
-        self.bodies.end();
     }
 }

@@ -13,6 +13,7 @@ use crate::{
 };
 
 mod gather;
+mod mount;
 mod push;
 #[expect(clippy::duplicate_mod, reason = "each engine has a parry of its own, with the same shapes")]
 #[path = "engine/shapes.rs"]
@@ -69,7 +70,7 @@ impl Plugin for ClothRapierPlugin {
             warn!("ClothRapierPlugin can't do its work: it needs RapierPhysicsPlugin; add it to the app");
             return;
         }
-        let systems = (gather::gather_colliders.into_configs(), push::push_bodies.into_configs());
+        let systems = ((gather::gather_colliders, mount::mount_pins).chain(), push::push_bodies.into_configs());
         schedule::bridge(app, "ClothRapierPlugin", Engine::Rapier, PhysicsSet::Writeback, systems);
     }
 }

@@ -207,12 +207,19 @@ pub(crate) fn bridge(
                         .chain()
                         .in_set(ClothSystems::Gather)
                         .after(collider::gather_obstacles),
-                    (BridgeSystems::Collect, BridgeSystems::Push(Engine::Avian), BridgeSystems::Push(Engine::Rapier))
+                    (BridgeSystems::Push(Engine::Avian), BridgeSystems::Push(Engine::Rapier))
                         .chain()
                         .in_set(ClothSystems::Finalize),
                 ),
             )
-            .add_systems(schedule, engine::collect_pushes.in_set(BridgeSystems::Collect));
+            .add_systems(
+                schedule,
+                (
+                    engine::untie_mounted.in_set(ClothSystems::Gather).after(BridgeSystems::Gather(Engine::Rapier)),
+                    engine::collect_pushes.in_set(ClothSystems::Finalize).before(BridgeSystems::Push(Engine::Avian)),
+                    engine::note_carriers.in_set(ClothSystems::Finalize).after(BridgeSystems::Push(Engine::Rapier)),
+                ),
+            );
     }
     app.configure_sets(schedule, ClothSystems::Gather.after(engine_is_done)).add_systems(
         schedule,
@@ -226,8 +233,6 @@ pub(crate) fn bridge(
 enum BridgeSystems {
     /// Adds an engine's colliders to the obstacles.
     Gather(Engine),
-    /// Takes over what cloths have given to bodies.
-    Collect,
     /// Pushes an engine's bodies.
     Push(Engine),
 }

@@ -17,7 +17,7 @@ use crate::{
     collider::Obstacles,
     parallel,
     schedule::ClothRun,
-    solver::{self, Member, Particles, Push, Scratch, StepContext, StepReport, Topology},
+    solver::{self, Member, Particles, Scratch, StepContext, StepReport, Topology},
     state::{ClothState, Work},
     wind::Winds,
 };
@@ -110,17 +110,19 @@ fn step_group(
     let stepped = states.iter_mut().filter(|state| state.material.is_some());
     for ((state, report), scratch) in stepped.zip(reports).zip(&scratches) {
         state.step_time = taken;
-        take_pushes(&mut state.work, scratch.pushes());
+        take_pushes(&mut state.work, scratch);
         end_step(state, report);
     }
     scratches.into_iter().rev().for_each(|scratch| workshop.give_back(scratch));
 }
 
-/// Keeps what the bodies among the obstacles have been given.
-fn take_pushes(work: &mut Work, given: &[Push]) {
-    let Work { obstacles, owners, pushes, .. } = work;
-    let bodies = obstacles.iter().zip(owners).zip(given).filter(|((obstacle, _), _)| obstacle.body.is_some());
-    pushes.extend(bodies.map(|((_, &mut owner), &push)| (owner, push)));
+/// Keeps what bodies have been given.
+fn take_pushes(work: &mut Work, scratch: &Scratch) {
+    let Work { obstacles, owners, mount_owners, pushes, .. } = work;
+    let given = obstacles.iter().zip(owners).zip(scratch.pushes());
+    let given = given.filter(|((obstacle, _), _)| obstacle.body.is_some()).map(|((_, owner), push)| (*owner, *push));
+    pushes.extend(given);
+    pushes.extend(mount_owners.iter().copied().zip(scratch.pulls().iter().copied()));
 }
 
 /// What of a cloth goes into a step.
@@ -143,7 +145,7 @@ impl<'a> Parts<'a> {
         let material = state.material?;
         state.step_start.clone_from(&state.particles.position);
         let ClothState { particles, topology, origin, settings, effort, work, tethers, .. } = state;
-        let Work { anchors, grabs, obstacles: near, owners, winds: felt, .. } = work;
+        let Work { anchors, mounts, mounted, grabs, obstacles: near, owners, winds: felt, .. } = work;
         surroundings.obstacles.around(*origin, settings.collision_mask, near, owners);
         surroundings.winds.around(*origin, felt);
         let ctx = StepContext {
@@ -154,6 +156,8 @@ impl<'a> Parts<'a> {
             material,
             gravity: (gravity * settings.gravity_scale).into(),
             anchors,
+            mounts,
+            mounted,
             grabs,
             max_velocity: settings.max_velocity,
             tethers: settings.tether_slack.map(|_| &*tethers),

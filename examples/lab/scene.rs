@@ -66,6 +66,8 @@ impl Scene {
             material: self.material,
             gravity: Vec3A::NEG_Y * 9.81,
             anchors: &self.anchors,
+            mounts: &[],
+            mounted: &[],
             grabs: &[],
             max_velocity: 50.0,
             tethers: self.tethers.as_ref(),

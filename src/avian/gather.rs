@@ -87,7 +87,7 @@ fn place(place: &ColliderTransform) -> Isometry3d {
     Isometry3d::new(place.translation, place.rotation.0)
 }
 
-fn mover(body: &RigidBodyQueryReadOnlyItem) -> Mover {
+pub(super) fn mover(body: &RigidBodyQueryReadOnlyItem) -> Mover {
     let dynamic = body.rb.is_dynamic().then(|| Dynamic {
         velocity: body.linear_velocity.0,
         // Along locked axes the body doesn't go where cloth pushes it; what it gets there is lost.

@@ -8,14 +8,13 @@ use avian3d::{
 use bevy::prelude::*;
 
 use super::gather::pose;
-use crate::engine::{Bridge, Moved, Pushes};
+use crate::engine::{Bridge, Pushes, carry, pushed};
 
 /// Gives the bodies what cloth has lost to them in the latest step. That wakes those that sleep.
 pub(super) fn push_bodies(
     pushes: Res<Pushes>,
     colliders: Query<&ColliderOf>,
     mut bodies: Query<(RigidBodyQuery, Option<&mut Transform>), Without<RigidBodyDisabled>>,
-    time: Res<Time>,
     mut bridge: ResMut<Bridge<SharedShape>>,
 ) {
     for given in &pushes.list {
@@ -27,14 +26,14 @@ pub(super) fn push_bodies(
         let velocity = body.effective_inverse_mass() * Vec3::from(given.push.linear);
         let turn = Mat3::from(body.effective_global_angular_inertia().inverse()) * Vec3::from(given.push.angular);
         let from = pose(&body.position, &body.rotation);
-        let moved = Moved::new(from, body.center_of_mass.0, velocity, turn, time.delta_secs());
-        body.position.0 = moved.pose.translation.into();
-        body.rotation.0 = moved.pose.rotation;
-        body.linear_velocity.0 += moved.velocity;
-        body.angular_velocity.0 += moved.angular_velocity;
+        let to = pushed(from, body.center_of_mass.0, &given.push);
+        body.position.0 = to.translation.into();
+        body.rotation.0 = to.rotation;
+        body.linear_velocity.0 += velocity;
+        body.angular_velocity.0 += turn;
         if let Some(mut transform) = transform {
-            moved.carry(&mut transform, from);
+            carry(&mut transform, from, to);
         }
-        bridge.bodies.moved(entity, moved.pose, body.linear_velocity.0);
+        bridge.bodies.moved(entity, to, body.linear_velocity.0);
     }
 }

@@ -64,8 +64,12 @@ struct Past {
 const UNEXPLAINED: f32 = 0.1;
 
 impl Bodies {
-    /// Begins another step, of `dt` s.
+    /// Begins another step, of `dt` s, and forgets the bodies that the latest hasn't seen.
     pub fn begin(&mut self, dt: f32) {
+        if self.known.len() > self.in_use {
+            let step = self.step;
+            self.known.retain(|_, past| past.step == step);
+        }
         (self.step, self.dt, self.in_use) = (self.step + 1, dt, 0);
     }
 
@@ -104,14 +108,6 @@ impl Bodies {
             (past.end, past.speed) = (pose, velocity.length());
         }
     }
-
-    /// Forgets the bodies that the step hasn't seen.
-    pub fn end(&mut self) {
-        if self.known.len() > self.in_use {
-            let step = self.step;
-            self.known.retain(|_, past| past.step == step);
-        }
-    }
 }
 
 #[cfg(test)]
@@ -130,9 +126,7 @@ mod tests {
 
     fn start_of(bodies: &mut Bodies, mover: &Mover) -> f32 {
         bodies.begin(0.1);
-        let way = bodies.way(Entity::PLACEHOLDER, mover);
-        bodies.end();
-        way.start.translation.x
+        bodies.way(Entity::PLACEHOLDER, mover).start.translation.x
     }
 
     #[test]
@@ -158,7 +152,6 @@ mod tests {
         let mut bodies = Bodies::default();
         start_of(&mut bodies, &at(0.0, 5.0));
         bodies.begin(0.1);
-        bodies.end();
         assert_eq!(start_of(&mut bodies, &at(0.2, 5.0)), 0.2);
     }
 

@@ -37,36 +37,24 @@ pub(crate) fn collect_pushes(mut cloths: Query<(Entity, &ClothStatus, &mut Cloth
     buffer.sort_unstable_by_key(|&(given, cloth, number)| (given.to, cloth, number));
     list.clear();
     let is_felt = |given: &Given| {
-        let Push { linear, angular } = given.push;
-        linear.is_finite() && angular.is_finite() && (linear != Vec3A::ZERO || angular != Vec3A::ZERO)
+        let Push { linear, angular, shift, turn } = given.push;
+        let is_finite = linear.is_finite() && angular.is_finite() && shift.is_finite() && turn.is_finite();
+        is_finite && (linear != Vec3A::ZERO || angular != Vec3A::ZERO)
     };
     list.extend(buffer.iter().map(|&(given, ..)| given).filter(is_felt));
 }
 
-/// How a body has moved by what cloth gave it, and with what it goes on.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Moved {
-    /// Its pose.
-    pub pose: Isometry3d,
-    /// Velocity that it has gained, m/s.
-    pub velocity: Vec3,
-    /// Angular velocity that it has gained, rad/s.
-    pub angular_velocity: Vec3,
+/// Where a push has brought a body that was at `pose`, whose centre of mass is at `centre` (m) in its frame.
+pub(crate) fn pushed(pose: Isometry3d, centre: Vec3, push: &Push) -> Isometry3d {
+    let rotation = (push.turn * pose.rotation).normalize();
+    let centre = Vec3A::from(centre);
+    let world_centre = pose * centre + push.shift;
+    Isometry3d { rotation, translation: world_centre - rotation * centre }
 }
 
-impl Moved {
-    /// From `pose`, with a centre of mass in the body's frame, after velocities were gained evenly over `dt` s.
-    pub fn new(pose: Isometry3d, centre: Vec3, velocity: Vec3, angular_velocity: Vec3, dt: f32) -> Self {
-        let turn = Quat::from_scaled_axis(angular_velocity * (dt / 2.0));
-        let rotation = (turn * pose.rotation).normalize();
-        let world_centre = Vec3::from(pose * Vec3A::from(centre)) + velocity * (dt / 2.0);
-        Self { pose: Isometry3d::new(world_centre - rotation * centre, rotation), velocity, angular_velocity }
-    }
-
-    /// Moves a transform along, from where the body was.
-    pub fn carry(&self, transform: &mut Transform, from: Isometry3d) {
-        let way = from.inverse() * self.pose;
-        transform.translation += transform.rotation * Vec3::from(way.translation);
-        transform.rotation = (transform.rotation * way.rotation).normalize();
-    }
+/// Moves a transform as a body has been moved.
+pub(crate) fn carry(transform: &mut Transform, from: Isometry3d, to: Isometry3d) {
+    let way = from.inverse() * to;
+    transform.translation += transform.rotation * Vec3::from(way.translation);
+    transform.rotation = (transform.rotation * way.rotation).normalize();
 }

@@ -69,7 +69,7 @@ fn are_met(collider: InteractionGroups, cloth: CollisionGroups) -> bool {
     collider.memberships.bits() & cloth.filters.bits() != 0 && cloth.memberships.bits() & collider.filter.bits() != 0
 }
 
-fn mover(body: &RigidBody) -> Mover {
+pub(super) fn mover(body: &RigidBody) -> Mover {
     let mass = body.mass_properties();
     let inertia = mass.effective_world_inv_inertia;
     let columns = [

@@ -8,7 +8,7 @@ use bevy_rapier3d::{
 };
 
 use super::shapes;
-use crate::engine::{Bridge, Moved, Pushes};
+use crate::engine::{Bridge, Pushes, carry, pushed};
 
 /// Gives the bodies what cloth has lost to them in the latest step. That wakes those that sleep.
 pub(super) fn push_bodies(
@@ -16,7 +16,6 @@ pub(super) fn push_bodies(
     handles: Query<(&RapierContextEntityLink, Option<&RapierRigidBodyHandle>, Option<&RapierColliderHandle>)>,
     mut contexts: Query<(&mut RapierRigidBodySet, &RapierContextColliders)>,
     mut shown: Query<(Option<&mut Velocity>, Option<&mut Transform>, Has<TransformInterpolation>, Has<ChildOf>)>,
-    time: Res<Time>,
     mut bridge: ResMut<Bridge<SharedShape>>,
 ) {
     for given in &pushes.list {
@@ -32,18 +31,18 @@ pub(super) fn push_bodies(
         let velocity = mass.effective_inv_mass * Vec3::from(given.push.linear);
         let turn = mass.effective_world_inv_inertia * Vec3::from(given.push.angular);
         let from = shapes::isometry(body.position());
-        let moved = Moved::new(from, body.local_center_of_mass(), velocity, turn, time.delta_secs());
-        body.set_position(Pose::from_parts(moved.pose.translation.into(), moved.pose.rotation), true);
-        body.set_linvel(body.linvel() + moved.velocity, true);
-        body.set_angvel(body.angvel() + moved.angular_velocity, true);
-        bridge.bodies.moved(entity, moved.pose, body.linvel());
+        let to = pushed(from, body.local_center_of_mass(), &given.push);
+        body.set_position(Pose::from_parts(to.translation.into(), to.rotation), true);
+        body.set_linvel(body.linvel() + velocity, true);
+        body.set_angvel(body.angvel() + turn, true);
+        bridge.bodies.moved(entity, to, body.linvel());
         let Ok((shown_velocity, transform, is_interpolated, is_child)) = shown.get_mut(entity) else { continue };
         // Rapier takes over components that have changed, as its own have in this step.
         if let Some(mut shown) = shown_velocity {
             (shown.linear, shown.angular) = (body.linvel(), body.angvel());
         }
         if let Some(mut transform) = transform.filter(|_| !is_interpolated && !is_child) {
-            moved.carry(&mut transform, from);
+            carry(&mut transform, from, to);
         }
     }
 }

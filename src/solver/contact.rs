@@ -63,6 +63,10 @@ pub struct Push {
     pub linear: Vec3A,
     /// Angular momentum about the body's centre of mass, N m s.
     pub angular: Vec3A,
+    /// How far the body's centre of mass has come off its way by that until the step's end, m.
+    pub shift: Vec3A,
+    /// By how much the body has turned by that.
+    pub turn: Quat,
 }
 
 /// Something that cloth can't enter, on its way over one step.

@@ -164,6 +164,12 @@ impl Lanes {
         self.inverse_mass[slot / LANES][slot % LANES]
     }
 
+    /// Sets the inverse mass of the particle in a slot, 1/kg.
+    #[inline]
+    pub fn set_inverse_mass(&mut self, slot: usize, inverse_mass: f32) {
+        self.inverse_mass[slot / LANES][slot % LANES] = inverse_mass;
+    }
+
     /// Number of slots.
     pub fn slot_count(&self) -> usize {
         self.inverse_mass.len() * LANES

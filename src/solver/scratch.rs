@@ -8,6 +8,7 @@ use super::{
         beads::Beads,
         bend::{Bending, Ways},
         level::Levels,
+        mount::Mounts,
         plate::Plate,
         tether::PinPlaces,
     },
@@ -46,6 +47,8 @@ pub struct Scratch {
     pub(super) plate: Plate,
     /// The pins that hold tethers.
     pub(super) pins: PinPlaces,
+    /// Bodies that anchors are fixed to.
+    pub(super) mounts: Mounts,
     /// What this thread needs of its own.
     pub(super) bench: Bench,
     /// What is touched with triangles and edges: of the first of the cloths that are stepped together.
@@ -61,5 +64,11 @@ impl Scratch {
     /// [`StepContext::obstacles`](super::StepContext::obstacles).
     pub fn pushes(&self) -> &[Push] {
         &self.pushes
+    }
+
+    /// What the latest step has given to each body that anchors are fixed to, in the order of
+    /// [`StepContext::mounts`](super::StepContext::mounts).
+    pub fn pulls(&self) -> &[Push] {
+        &self.mounts.pushes
     }
 }
