@@ -56,6 +56,8 @@ fn hang(criterion: &mut Criterion) {
             material,
             gravity: Vec3A::NEG_Y * 9.81,
             anchors: &anchors,
+            mounts: &[],
+            mounted: &[],
             grabs: &[],
             max_velocity: 50.0,
             tethers: Some(&tethers),

@@ -12,7 +12,7 @@ use crate::{
     origin,
     pins::{PinTarget, Pins, targets_by_particle},
     solver::Anchor,
-    state::ClothState,
+    state::{ClothState, Work},
 };
 
 /// A fixed particle.
@@ -68,7 +68,8 @@ pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity,
     }
     let particles: Vec<u32> = pins.iter().map(|pin| pin.particle).collect();
     state.tethers.keep(|pin| particles.binary_search(&pin).is_ok());
-    state.tying = Some(Box::new(Tying::begin(particles)));
+    let tied = particles.iter().copied().filter(|particle| !state.mounted.contains(particle));
+    state.tying = Some(Box::new(Tying::begin(tied.collect())));
     state.pins = pins;
     set_masses(state);
     // Takes the places of new pins in their targets' space now, before either moves on.
@@ -132,7 +133,12 @@ fn plan_anchors(state: &mut ClothState, cloth: Entity, poses: &Poses) {
     let origin = Vec3A::from(state.origin);
     // Pins of one target stand together mostly: its pose is looked up once.
     let mut latest: Option<(PinTarget, Option<Affine3A>)> = None;
-    state.work.anchors.clear();
+    let Work { anchors, mounts, mount_owners, mounted, .. } = &mut state.work;
+    anchors.clear();
+    // Bridges to physics engines fill these.
+    mounts.clear();
+    mount_owners.clear();
+    mounted.clear();
     for pin in &mut state.pins {
         let pose = match latest {
             Some((target, pose)) if target == pin.target => pose,
@@ -151,7 +157,7 @@ fn plan_anchors(state: &mut ClothState, cloth: Entity, poses: &Poses) {
             (_, None) => start,
         };
         let end = if end.is_finite() { end } else { start };
-        state.work.anchors.push(Anchor { particle: pin.particle, start, end });
+        anchors.push(Anchor { particle: pin.particle, start, end });
     }
 }
 
@@ -165,7 +171,7 @@ fn carrier(state: &ClothState, cloth: Entity, poses: &Poses) -> Option<Carrier> 
 }
 
 /// The entity that a target's pins follow.
-fn target_entity(target: PinTarget, cloth: Entity) -> Option<Entity> {
+pub(crate) fn target_entity(target: PinTarget, cloth: Entity) -> Option<Entity> {
     match target {
         PinTarget::Cloth => Some(cloth),
         PinTarget::Entity(entity) => entity,

@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::{
     anchor::Poses,
-    solver::{Obstacle, Shape, Solid},
+    solver::{Body, Obstacle, Shape, Solid},
 };
 use error::ColliderError;
 
@@ -154,17 +154,20 @@ impl Obstacles {
         self.list.iter().map(|(entity, layers, obstacle)| (*entity, *layers, obstacle))
     }
 
-    /// Writes the obstacles that `mask` selects into `near`, relative to `origin`.
-    pub(crate) fn around(&self, origin: Vec3, mask: u32, near: &mut Vec<Obstacle>) {
+    /// Writes the obstacles that `mask` selects into `near`, relative to `origin`, and whose they are into `owners`.
+    pub(crate) fn around(&self, origin: Vec3, mask: u32, near: &mut Vec<Obstacle>, owners: &mut Vec<Entity>) {
         let origin = Vec3A::from(origin);
         let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - origin, pose.rotation);
+        let selected = || self.list.iter().filter(|(_, layers, _)| layers & mask != 0);
         near.clear();
-        let selected = self.list.iter().filter(|(_, layers, _)| layers & mask != 0);
-        near.extend(selected.map(|(_, _, obstacle)| Obstacle {
+        near.extend(selected().map(|(_, _, obstacle)| Obstacle {
             start: relative(obstacle.start),
             end: relative(obstacle.end),
+            body: obstacle.body.map(|body| Body { centre: body.centre - origin, ..body }),
             ..obstacle.clone()
         }));
+        owners.clear();
+        owners.extend(selected().map(|&(entity, ..)| entity));
     }
 }
 

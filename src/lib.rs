@@ -60,6 +60,13 @@ mod draw;
 mod commands;
 mod schedule;
 
+#[cfg(feature = "avian")]
+mod avian;
+#[cfg(any(feature = "avian", feature = "rapier"))]
+mod engine;
+#[cfg(feature = "rapier")]
+mod rapier;
+
 #[cfg(feature = "debug")]
 pub mod debug;
 #[cfg(feature = "panel")]
@@ -72,10 +79,16 @@ pub use error::ClothError;
 
 /// What a game needs.
 pub mod prelude {
+    #[cfg(feature = "avian")]
+    pub use crate::avian::{ClothAvianPlugin, ClothAvianSettings};
     #[cfg(feature = "mesh_colliders")]
     pub use crate::collider::mesh::HeightField;
+    #[cfg(any(feature = "avian", feature = "rapier"))]
+    pub use crate::engine::NotClothCollider;
     #[cfg(feature = "picking")]
     pub use crate::picking::{ClothPickingPlugin, ClothPickingSettings, PointerGrabs};
+    #[cfg(feature = "rapier")]
+    pub use crate::rapier::{ClothRapierPlugin, ClothRapierSettings};
     pub use crate::{
         build::grain::ATTRIBUTE_WARP,
         cloth::{Cloth, ClothFailed, ClothGravity, ClothReady, ClothReset, ClothSolver, ClothStatus, ResetCause},

@@ -4,12 +4,14 @@ use bevy::{
     app::FixedMain,
     asset::AssetEventSystems,
     ecs::{
-        schedule::{InternedScheduleLabel, ScheduleLabel},
-        system::SystemParam,
+        schedule::{InternedScheduleLabel, ScheduleConfigs, ScheduleLabel},
+        system::{ScheduleSystem, SystemParam},
     },
     prelude::*,
 };
 
+#[cfg(any(feature = "avian", feature = "rapier"))]
+use crate::engine::{self, Engine, Pushes};
 use crate::{
     anchor, build, cloth, collider, draw,
     fabric::{self, Fabric},
@@ -178,15 +180,66 @@ fn has_what_it_needs(time: Option<Res<Time>>, meshes: Option<Res<Assets<Mesh>>>)
 /// Has `system` run after each step, in the schedule that [`ClothPlugin`] was given: for the `finish` of `plugin`, when
 /// that is known whichever was added first. Says so where there is none.
 #[cfg(any(feature = "debug", feature = "panel"))]
-pub(crate) fn run_after_steps<M>(
-    app: &mut App,
-    plugin: &str,
-    system: impl IntoScheduleConfigs<bevy::ecs::system::ScheduleSystem, M>,
-) {
+pub(crate) fn run_after_steps<M>(app: &mut App, plugin: &str, system: impl IntoScheduleConfigs<ScheduleSystem, M>) {
     match app.get_added_plugins::<ClothPlugin>().first().map(|cloth| cloth.schedule) {
         Some(schedule) => drop(app.add_systems(schedule, system.in_set(ClothSystems::Finalize))),
         None => warn!("{plugin} can't do its work: it needs ClothPlugin; add it to the app"),
     }
+}
+
+/// Has the systems of a bridge to a physics engine run: the first gathers colliders, the second pushes bodies. For the
+/// `finish` of `plugin`, when it is known in which schedule. All that `engine_is_done` runs comes first, if that is in the
+/// same schedule.
+#[cfg(any(feature = "avian", feature = "rapier"))]
+pub(crate) fn bridge(
+    app: &mut App,
+    plugin: &str,
+    engine: Engine,
+    engine_is_done: impl SystemSet,
+    (gather, push): (ScheduleConfigs<ScheduleSystem>, ScheduleConfigs<ScheduleSystem>),
+) {
+    let Some(schedule) = app.get_added_plugins::<ClothPlugin>().first().map(|cloth| cloth.schedule) else {
+        warn!("{plugin} can't do its work: it needs ClothPlugin; add it to the app");
+        return;
+    };
+    if !app.world().contains_resource::<Pushes>() {
+        app.init_resource::<Pushes>()
+            .configure_sets(
+                schedule,
+                (
+                    // In the same order always: contact depends on that of the obstacles.
+                    (BridgeSystems::Gather(Engine::Avian), BridgeSystems::Gather(Engine::Rapier))
+                        .chain()
+                        .in_set(ClothSystems::Gather)
+                        .after(collider::gather_obstacles),
+                    (BridgeSystems::Push(Engine::Avian), BridgeSystems::Push(Engine::Rapier))
+                        .chain()
+                        .in_set(ClothSystems::Finalize),
+                ),
+            )
+            .add_systems(
+                schedule,
+                (
+                    engine::untie_mounted.in_set(ClothSystems::Gather).after(BridgeSystems::Gather(Engine::Rapier)),
+                    engine::collect_pushes.in_set(ClothSystems::Finalize).before(BridgeSystems::Push(Engine::Avian)),
+                    engine::note_carriers.in_set(ClothSystems::Finalize).after(BridgeSystems::Push(Engine::Rapier)),
+                ),
+            );
+    }
+    app.configure_sets(schedule, ClothSystems::Gather.after(engine_is_done)).add_systems(
+        schedule,
+        (gather.in_set(BridgeSystems::Gather(engine)), push.in_set(BridgeSystems::Push(engine))),
+    );
+}
+
+/// What bridges to physics engines do.
+#[cfg(any(feature = "avian", feature = "rapier"))]
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum BridgeSystems {
+    /// Adds an engine's colliders to the obstacles.
+    Gather(Engine),
+    /// Pushes an engine's bodies.
+    Push(Engine),
 }
 
 /// How the plugin was set up.

@@ -82,6 +82,7 @@ fn step_group(
 ) {
     for state in &mut *states {
         state.is_taken_back = false;
+        state.work.pushes.clear();
     }
     // Paused: nothing is new to draw, and what pushes the cloth is kept until time goes on.
     if time.delta_secs() <= 0.0 {
@@ -107,11 +108,21 @@ fn step_group(
     drop(parts);
     let taken = begun.elapsed() / states.len().max(1) as u32;
     let stepped = states.iter_mut().filter(|state| state.material.is_some());
-    for (state, report) in stepped.zip(reports) {
+    for ((state, report), scratch) in stepped.zip(reports).zip(&scratches) {
         state.step_time = taken;
+        take_pushes(&mut state.work, scratch);
         end_step(state, report);
     }
     scratches.into_iter().rev().for_each(|scratch| workshop.give_back(scratch));
+}
+
+/// Keeps what bodies have been given.
+fn take_pushes(work: &mut Work, scratch: &Scratch) {
+    let Work { obstacles, owners, mount_owners, pushes, .. } = work;
+    let given = obstacles.iter().zip(owners).zip(scratch.pushes());
+    let given = given.filter(|((obstacle, _), _)| obstacle.body.is_some()).map(|((_, owner), push)| (*owner, *push));
+    pushes.extend(given);
+    pushes.extend(mount_owners.iter().copied().zip(scratch.pulls().iter().copied()));
 }
 
 /// What of a cloth goes into a step.
@@ -134,8 +145,8 @@ impl<'a> Parts<'a> {
         let material = state.material?;
         state.step_start.clone_from(&state.particles.position);
         let ClothState { particles, topology, origin, settings, effort, work, tethers, .. } = state;
-        let Work { anchors, grabs, obstacles: near, winds: felt } = work;
-        surroundings.obstacles.around(*origin, settings.collision_mask, near);
+        let Work { anchors, mounts, mounted, grabs, obstacles: near, owners, winds: felt, .. } = work;
+        surroundings.obstacles.around(*origin, settings.collision_mask, near, owners);
         surroundings.winds.around(*origin, felt);
         let ctx = StepContext {
             dt,
@@ -145,6 +156,8 @@ impl<'a> Parts<'a> {
             material,
             gravity: (gravity * settings.gravity_scale).into(),
             anchors,
+            mounts,
+            mounted,
             grabs,
             max_velocity: settings.max_velocity,
             tethers: settings.tether_slack.map(|_| &*tethers),
@@ -178,6 +191,7 @@ fn end_step(state: &mut ClothState, report: Option<StepReport>) {
     if state.is_taken_back {
         state.particles.position.clone_from(&state.step_start);
         state.particles.velocity.fill(Vec3A::ZERO);
+        state.work.pushes.clear();
     }
 }
 

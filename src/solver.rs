@@ -32,6 +32,7 @@ pub mod measure;
 pub use braid::Braid;
 pub use constraint::{
     grab::{Grab, GrabTether},
+    mount::{Mount, Mounted},
     tether::{Tether, Tethers},
 };
 pub use contact::{

@@ -15,8 +15,8 @@ use crate::{
     draw::{carrier::Carrier, shading::particle_normals},
     grab::Grabs,
     solver::{
-        self, Anchor, Effort, Energy, Grab, Material, Obstacle, Particles, StepReport, Strain, Tether, Tethers,
-        Topology, Weave, WindSource,
+        self, Anchor, Effort, Energy, Grab, Material, Mount, Mounted, Obstacle, Particles, Push, StepReport, Strain,
+        Tether, Tethers, Topology, Weave, WindSource,
     },
 };
 
@@ -48,6 +48,8 @@ pub struct ClothState {
     pub(crate) material: Option<Material>,
     /// Fixed particles and what they follow.
     pub(crate) pins: Vec<HeldPin>,
+    /// Particles that are fixed to bodies which give way, by what is known: they hold no tethers.
+    pub(crate) mounted: Vec<u32>,
     /// Tethers to the pins.
     pub(crate) tethers: Tethers,
     /// Tethers that are being worked out anew.
@@ -106,6 +108,14 @@ pub(crate) struct Work {
     pub anchors: Vec<Anchor>,
     pub grabs: Vec<Grab>,
     pub obstacles: Vec<Obstacle>,
+    /// Whose obstacle each is.
+    pub owners: Vec<Entity>,
+    /// Bodies that pins are fixed to, whose they are, and which anchors are on which.
+    pub mounts: Vec<Mount>,
+    pub mount_owners: Vec<Entity>,
+    pub mounted: Vec<Mounted>,
+    /// What the bodies among all these have been given.
+    pub pushes: Vec<(Entity, Push)>,
     pub winds: Vec<WindSource>,
 }
 

@@ -282,6 +282,7 @@ impl CandidateItem<'_, '_> {
 /// Gives a cloth the `tethers` that tie `ties`. Where its pins have changed meanwhile, those to new ones are worked out
 /// while it runs.
 fn tie(state: &mut ClothState, targets: &[PinTarget], ties: &Ties, mut tethers: Tethers) {
+    state.mounted.clear();
     if ties.pins == pinned(targets) {
         state.tying = None;
     } else {

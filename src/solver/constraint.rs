@@ -12,6 +12,7 @@ pub mod grab;
 pub(super) mod law;
 pub(super) mod level;
 pub(super) mod loose;
+pub mod mount;
 pub(super) mod plate;
 pub mod spring;
 pub(super) mod strand;

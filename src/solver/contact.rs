@@ -6,7 +6,7 @@
 //! contact pushed (Müller et al., "Position Based Dynamics", 2007, section 3.6, with the normal push in place of a
 //! damping constant). There is no restitution.
 
-use bevy::math::{Isometry3d, Mat3A, Vec3A};
+use bevy::math::{Isometry3d, Mat3A, Quat, Vec3A};
 
 pub mod mesh;
 pub mod solid;
@@ -63,6 +63,10 @@ pub struct Push {
     pub linear: Vec3A,
     /// Angular momentum about the body's centre of mass, N m s.
     pub angular: Vec3A,
+    /// How far the body's centre of mass has come off its way by that until the step's end, m.
+    pub shift: Vec3A,
+    /// By how much the body has turned by that.
+    pub turn: Quat,
 }
 
 /// Something that cloth can't enter, on its way over one step.

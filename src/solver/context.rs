@@ -6,7 +6,7 @@ use bevy::{
     tasks::TaskPool,
 };
 
-use super::{Effort, Grab, Material, Obstacle, Tethers, WindSource};
+use super::{Effort, Grab, Material, Mount, Mounted, Obstacle, Tethers, WindSource};
 
 /// How the springs are integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,6 +62,10 @@ pub struct StepContext<'a> {
     pub gravity: Vec3A,
     /// Fixed particles and their way.
     pub anchors: &'a [Anchor],
+    /// Bodies that anchors are fixed to and that give way. On these there are no tethers.
+    pub mounts: &'a [Mount],
+    /// Which anchors are fixed to which of them.
+    pub mounted: &'a [Mounted],
     /// Hands that pull at the cloth.
     pub grabs: &'a [Grab],
     /// The most that a particle may be faster than what holds the cloth, m/s. Not for [`Method::Explicit`].

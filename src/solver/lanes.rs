@@ -163,6 +163,12 @@ impl Lanes {
     pub fn inverse_mass(&self, slot: usize) -> f32 {
         self.inverse_mass[slot / LANES][slot % LANES]
     }
+
+    /// Sets the inverse mass of the particle in a slot, 1/kg.
+    #[inline]
+    pub fn set_inverse_mass(&mut self, slot: usize, inverse_mass: f32) {
+        self.inverse_mass[slot / LANES][slot % LANES] = inverse_mass;
+    }
 }
 
 /// Some blocks of a cloth, one after the other.

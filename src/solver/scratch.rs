@@ -3,11 +3,12 @@
 use bevy::math::Vec3A;
 
 use super::{
-    Instructions, Lanes,
+    Instructions, Lanes, Push,
     constraint::{
         beads::Beads,
         bend::{Bending, Ways},
         level::Levels,
+        mount::Mounts,
         plate::Plate,
         tether::PinPlaces,
     },
@@ -46,6 +47,8 @@ pub struct Scratch {
     pub(super) plate: Plate,
     /// The pins that hold tethers.
     pub(super) pins: PinPlaces,
+    /// Bodies that anchors are fixed to.
+    pub(super) mounts: Mounts,
     /// What this thread needs of its own.
     pub(super) bench: Bench,
     /// The solids around.
@@ -54,4 +57,20 @@ pub struct Scratch {
     pub(super) touch: Touch,
     /// What each thread needs of its own that shares a large cloth.
     pub(super) benches: Vec<Bench>,
+    /// What the bodies among the obstacles were given.
+    pub(super) pushes: Vec<Push>,
+}
+
+impl Scratch {
+    /// What the latest step has given to the body of each obstacle, in the order of
+    /// [`StepContext::obstacles`](super::StepContext::obstacles).
+    pub fn pushes(&self) -> &[Push] {
+        &self.pushes
+    }
+
+    /// What the latest step has given to each body that anchors are fixed to, in the order of
+    /// [`StepContext::mounts`](super::StepContext::mounts).
+    pub fn pulls(&self) -> &[Push] {
+        &self.mounts.pushes
+    }
 }

@@ -144,8 +144,11 @@ impl<'a> Plan<'a> {
         let is_near = contact::is_any_near(particles, ctx, dt);
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
         let touches = ctx.self_collision != SelfCollision::Off;
-        let with_care = is_near || touches || !is_tethered || !ctx.grabs.is_empty();
+        let is_mounted = !ctx.mounted.is_empty();
+        let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
         let (wanted, levels) = ctx.effort.of_step(with_care, dt);
+        // Levels move what hangs on a body without its weight on the body.
+        let levels = if is_mounted { &[] } else { levels };
         let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
             Method::Strands => (u32::MAX, wanted, 1.0, levels),
             Method::Xpbd => (u32::MAX, wanted, 1.0, &[][..]),
@@ -201,6 +204,7 @@ impl<'a> Running<'a> {
         let Loaded { is_pushed, has_moved } = load(particles, topology, ctx, h, helpers, scratch);
         grab::take_up(&mut scratch.lanes, ctx.grabs);
         scratch.near.begin();
+        scratch.mounts.begin(&mut scratch.lanes, topology, ctx);
         let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
         let substep = Substep {
             topology,
@@ -218,6 +222,7 @@ impl<'a> Running<'a> {
         };
         scratch.air.sample(particles, ctx);
         substep.prepare(scratch);
+        scratch.mounts.rest(&mut scratch.lanes);
         Self {
             particles,
             scratch,
@@ -251,6 +256,8 @@ impl<'a> Running<'a> {
             substep.move_freely(scratch);
         }
         anchor::advance(&mut scratch.lanes, ctx.anchors, span.end, self.dt);
+        let Scratch { lanes, mounts, applied_force, .. } = &mut **scratch;
+        mounts.advance(lanes, ctx, span.clone(), self.dt, substep.applied(applied_force));
         if let Some(tethers) = ctx.tethers {
             scratch.pins.read(tethers, &scratch.lanes);
         }
@@ -272,6 +279,8 @@ impl<'a> Running<'a> {
             }
             Method::Explicit => grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h),
         }
+        let Scratch { lanes, mounts, .. } = &mut **scratch;
+        mounts.settle(lanes, ctx, substep.h);
     }
 
     /// Keeps the cloth out of obstacles and ends the substep.
@@ -331,9 +340,10 @@ fn load(
     Loaded { is_pushed, has_moved: !is_pushed }
 }
 
-/// The threads that share the work, where it pays: all springs are on the lattice, and no hand holds it.
+/// The threads that share the work, where it pays: all springs are on the lattice, and neither hands nor bodies hold it.
 fn helpers<'a>(topology: &'a Topology, ctx: &StepContext<'a>) -> Option<(&'a TaskPool, &'a Lattice)> {
     let is_woven = ctx.method == Method::Strands && topology.batches.iter().all(|batch| batch.woven);
     let is_large = topology.particle_count() >= share::LARGE;
-    ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_woven && ctx.grabs.is_empty())
+    let is_free = ctx.grabs.is_empty() && ctx.mounted.is_empty();
+    ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_woven && is_free)
 }

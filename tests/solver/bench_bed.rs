@@ -11,8 +11,8 @@ use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothSprings, Fabric},
     solver::{
-        Anchor, Effort, Elasticity, Grab, Material, Method, Obstacle, Particles, Scratch, SelfCollision, StepContext,
-        StepReport, Tethers, Topology, WindSource, step,
+        Anchor, Effort, Elasticity, Grab, Material, Method, Mount, Mounted, Obstacle, Particles, Scratch,
+        SelfCollision, StepContext, StepReport, Tethers, Topology, WindSource, step,
     },
 };
 
@@ -31,6 +31,8 @@ pub struct Bed {
     pub particles: Particles,
     pub material: Material,
     pub anchors: Vec<Anchor>,
+    pub mounts: Vec<Mount>,
+    pub mounted: Vec<Mounted>,
     pub grabs: Vec<Grab>,
     pub tethers: Option<Tethers>,
     pub tether_slack: f32,
@@ -75,6 +77,8 @@ impl Bed {
             topology,
             material,
             anchors: Vec::new(),
+            mounts: Vec::new(),
+            mounted: Vec::new(),
             grabs: Vec::new(),
             tethers: None,
             tether_slack: 0.0,
@@ -149,6 +153,8 @@ impl Bed {
             material: self.material,
             gravity: self.gravity,
             anchors: &self.anchors,
+            mounts: &self.mounts,
+            mounted: &self.mounted,
             grabs: &self.grabs,
             max_velocity: self.max_velocity,
             tethers: self.tethers.as_ref(),

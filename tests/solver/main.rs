@@ -14,6 +14,7 @@ mod lattices;
 mod levels;
 mod memory;
 mod meshes;
+mod mounts;
 mod rates;
 mod robustness;
 mod sheets;

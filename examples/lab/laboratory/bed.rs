@@ -119,6 +119,8 @@ impl Bed {
             material: self.material,
             gravity: self.gravity,
             anchors: &self.anchors,
+            mounts: &[],
+            mounted: &[],
             grabs: &[],
             max_velocity: 100.0,
             tethers: self.tethers.as_ref(),

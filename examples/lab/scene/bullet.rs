@@ -29,7 +29,7 @@ pub fn ball(settings: &Settings, radius: f32) -> io::Result<Scene> {
         scene.lead_obstacle(0, Isometry3d::from_translation(place(seconds)));
     });
     Ok(scene.judged_by("passed", |scene| {
-        let centre = Vec3A::from(scene.surroundings.obstacles[0].end.translation);
+        let centre = scene.surroundings.obstacles[0].end.translation;
         let above = crossing::crossings(scene.triangles(), [centre, centre + Vec3A::Y * 10.0]).count();
         (above % 2 == 0) as u32 as f32
     }))

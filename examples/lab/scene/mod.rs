@@ -185,6 +185,8 @@ impl Surroundings {
             material: settings.material,
             gravity: Vec3A::NEG_Y * 9.81,
             anchors: &rig.anchors,
+            mounts: &[],
+            mounted: &[],
             grabs: &[],
             max_velocity: 50.0,
             tethers: rig.tethers.as_ref(),

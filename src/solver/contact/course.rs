@@ -14,7 +14,7 @@ pub(super) trait Course<S: Simd>: Copy {
     fn to_local(&self, point: Vec3x8<S>) -> Vec3x8<S>;
 
     /// The same as it was at the start.
-    fn from_local(&self, point: Vec3x8<S>) -> Vec3x8<S>;
+    fn start_to_local(&self, point: Vec3x8<S>) -> Vec3x8<S>;
 
     /// A direction of the frame at the end, in the world.
     fn turned(&self, direction: Vec3x8<S>) -> Vec3x8<S>;
@@ -59,7 +59,7 @@ impl<S: Simd> Course<S> for Shifted<S> {
     }
 
     #[inline(always)]
-    fn from_local(&self, point: Vec3x8<S>) -> Vec3x8<S> {
+    fn start_to_local(&self, point: Vec3x8<S>) -> Vec3x8<S> {
         point - self.origin
     }
 
@@ -104,7 +104,7 @@ impl<S: Simd> Course<S> for Turned<S> {
     }
 
     #[inline(always)]
-    fn from_local(&self, point: Vec3x8<S>) -> Vec3x8<S> {
+    fn start_to_local(&self, point: Vec3x8<S>) -> Vec3x8<S> {
         self.to_local(point)
     }
 
@@ -134,7 +134,7 @@ impl<S: Simd> Course<S> for Moving<S> {
     }
 
     #[inline(always)]
-    fn from_local(&self, point: Vec3x8<S>) -> Vec3x8<S> {
+    fn start_to_local(&self, point: Vec3x8<S>) -> Vec3x8<S> {
         self.start.to_local(point)
     }
 

@@ -100,7 +100,7 @@ fn past_stretches<S: Simd, C: Course<S>>(
             if is_near.all_false() {
                 continue;
             }
-            let old = field.seen(course.from_local(before));
+            let old = field.seen(course.start_to_local(before));
             let sees_the_same = old.normal.dot(after.normal).simd_gt(zero);
             let touches = is_near & sees_the_same & depth.simd_gt(zero);
             let mut swept = (is_near & !sees_the_same).to_bitmask();

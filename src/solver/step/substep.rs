@@ -105,8 +105,12 @@ impl Substep<'_> {
     }
 
     fn motion<'a>(&self, force: &'a Points) -> Motion<'a> {
-        let is_applied = self.is_pushed || self.ctx.method == Method::Explicit;
-        Motion { force: is_applied.then_some(force), ..Motion::free(self.ctx, self.h) }
+        Motion { force: self.applied(force), ..Motion::free(self.ctx, self.h) }
+    }
+
+    /// The force that is applied, if one is.
+    pub fn applied<'a>(&self, force: &'a Points) -> Option<&'a Points> {
+        (self.is_pushed || self.ctx.method == Method::Explicit).then_some(force)
     }
 
     /// What ends the substep, and begins the next one where that `goes_on` at once.

@@ -88,7 +88,7 @@ impl Field for TaperedCapsule {
         let some = point.x;
         // Sine of the angle between the cone's side and the axis.
         let sine = (radius_bottom - radius_top) / (2.0 * half_length);
-        if !(sine.abs() < 1.0) {
+        if sine.is_nan() || sine.abs() >= 1.0 {
             // One ball has the other within.
             let (radius, end) =
                 if radius_top > radius_bottom { (radius_top, half_length) } else { (radius_bottom, -half_length) };

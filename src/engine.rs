@@ -1,0 +1,102 @@
+//! What the bridges to physics engines have in common: their colliders become obstacles, and their bodies get back the
+//! momentum that cloth gives them.
+
+use std::sync::Arc;
+
+use bevy::{math::Isometry3d, prelude::*};
+
+use crate::{collider::Obstacles, solver::Obstacle};
+
+mod bodies;
+mod mounts;
+mod parts;
+mod pushes;
+
+pub(crate) use bodies::{Bodies, Dynamic, Mover};
+pub(crate) use mounts::{mount_pins, note_carriers, untie_mounted};
+pub(crate) use parts::{Part, Shapes, capsule, mesh};
+pub(crate) use pushes::{Pushes, carry, collect_pushes, pushed};
+
+/// Takes a collider of a physics engine, or all of a rigid body's, out of what cloth meets. A collider with a
+/// [`ClothCollider`](crate::prelude::ClothCollider) of its own doesn't need it: that one counts instead.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+pub struct NotClothCollider;
+
+/// The engines, in the order in which cloth meets their colliders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Engine {
+    Avian,
+    Rapier,
+}
+
+/// The friction that engines give to colliders by default, no unit. It is what a factor of 1 on a cloth's own stands for.
+const USUAL_FRICTION: f32 = 0.5;
+
+/// Factor on the friction of cloth, given an engine's coefficient of a collider.
+pub(crate) fn friction_factor(coefficient: f32) -> f32 {
+    let factor = coefficient / USUAL_FRICTION;
+    if factor.is_finite() { factor.max(0.0) } else { 1.0 }
+}
+
+/// What a bridge remembers from step to step. `S` is the engine's shared shape.
+#[derive(Resource, Debug)]
+pub(crate) struct Bridge<S: Send + Sync + 'static> {
+    pub shapes: Shapes<S>,
+    pub bodies: Bodies,
+    met: Vec<Met>,
+}
+
+/// A collider that cloth may meet.
+#[derive(Debug)]
+pub(crate) struct Met {
+    pub collider: Entity,
+    /// Layers that it is in, one a bit.
+    pub layers: u32,
+    /// Factor on the cloth's friction, no unit.
+    pub friction: f32,
+    /// The body that it belongs to, or itself.
+    pub body: Entity,
+    pub mover: Mover,
+    /// Where it is in the body's frame.
+    pub place: Isometry3d,
+    pub parts: Arc<[Part]>,
+}
+
+impl<S: Send + Sync + 'static> Default for Bridge<S> {
+    fn default() -> Self {
+        Self { shapes: Shapes::default(), bodies: Bodies::default(), met: Vec::new() }
+    }
+}
+
+impl<S: Clone + Send + Sync + 'static> Bridge<S> {
+    /// Begins a step of `dt` s.
+    pub fn begin(&mut self, dt: f32) {
+        self.shapes.begin();
+        self.bodies.begin(dt);
+        self.met.clear();
+    }
+
+    pub fn meet(&mut self, met: Met) {
+        self.met.push(met);
+    }
+
+    /// Adds all that cloth may meet to the obstacles, in the order of the colliders.
+    pub fn end(&mut self, obstacles: &mut Obstacles) {
+        self.met.sort_unstable_by_key(|met| met.collider);
+        for Met { collider, layers, friction, body, mover, place, parts } in self.met.drain(..) {
+            let way = self.bodies.way(body, &mover);
+            let (start, end) = (way.start * place, way.end * place);
+            let is_finite = |pose: &Isometry3d| pose.translation.is_finite() && pose.rotation.is_finite();
+            if !is_finite(&start) || !is_finite(&end) {
+                continue;
+            }
+            obstacles.list.extend(parts.iter().map(|Part { shape, pose, .. }| {
+                let obstacle =
+                    Obstacle { shape: shape.clone(), start: start * *pose, end: end * *pose, friction, body: way.body };
+                (collider, layers, obstacle)
+            }));
+        }
+        self.shapes.end();
+    }
+}

@@ -1,0 +1,166 @@
+//! Where bodies were, and what it takes to move them.
+
+use bevy::{
+    math::{Isometry3d, Mat3A, Vec3A},
+    platform::{collections::HashMap, hash::FixedHasher},
+    prelude::*,
+};
+
+use crate::solver::Body;
+
+/// A body, or a collider of its own, as an engine has left it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mover {
+    /// Its pose now.
+    pub pose: Isometry3d,
+    /// What is known of it if only forces move it, and none its user.
+    pub dynamic: Option<Dynamic>,
+}
+
+/// A body that forces move.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dynamic {
+    /// Velocity of its centre of mass, m/s.
+    pub velocity: Vec3,
+    /// Inverse mass, 1/kg.
+    pub inverse_mass: f32,
+    /// Inverse of the tensor of inertia about its centre of mass, along the world's axes, 1/(kg m²).
+    pub inverse_inertia: Mat3A,
+    /// Centre of mass in its own frame, m.
+    pub centre: Vec3A,
+}
+
+/// The way of a body over the coming step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub start: Isometry3d,
+    pub end: Isometry3d,
+    /// What it takes to move it.
+    pub body: Option<Body>,
+}
+
+/// Bodies as the latest step of cloth has left them.
+#[derive(Debug, Default)]
+pub(crate) struct Bodies {
+    known: HashMap<Entity, Past, FixedHasher>,
+    /// Number of the present step.
+    step: u64,
+    /// Duration of the present step, s.
+    dt: f32,
+    in_use: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Past {
+    start: Isometry3d,
+    end: Isometry3d,
+    speed: f32,
+    /// The step that it belongs to.
+    step: u64,
+}
+
+/// A body that forces move may come this much farther within a step than its velocity says, m: engines push bodies out of
+/// each other. One that comes farther has been put somewhere else, and sweeps nothing on its way.
+const UNEXPLAINED: f32 = 0.1;
+
+impl Bodies {
+    /// Begins another step, of `dt` s, and forgets the bodies that the latest hasn't seen.
+    pub fn begin(&mut self, dt: f32) {
+        if self.known.len() > self.in_use {
+            let step = self.step;
+            self.known.retain(|_, past| past.step == step);
+        }
+        (self.step, self.dt, self.in_use) = (self.step + 1, dt, 0);
+    }
+
+    /// The way of a body from where the latest step has left it to where it is now.
+    pub fn way(&mut self, entity: Entity, mover: &Mover) -> Way {
+        let Mover { pose: end, dynamic } = *mover;
+        let speed = dynamic.map_or(0.0, |dynamic| dynamic.velocity.length());
+        let step = self.step;
+        let past = self.known.get(&entity).copied();
+        let start = match past {
+            // Of another collider of the same body.
+            Some(past) if past.step == step => past.start,
+            Some(past) if past.step + 1 == step => {
+                let explained = 2.0 * self.dt * speed.max(past.speed) + UNEXPLAINED;
+                let is_put = dynamic.is_some() && past.end.translation.distance(end.translation) > explained;
+                if is_put { end } else { past.end }
+            }
+            // It wasn't there.
+            _ => end,
+        };
+        if past.is_none_or(|past| past.step != step) {
+            self.known.insert(entity, Past { start, end, speed, step });
+            self.in_use += 1;
+        }
+        let body = dynamic.filter(|dynamic| dynamic.inverse_mass > 0.0).map(|dynamic| Body {
+            inverse_mass: dynamic.inverse_mass,
+            inverse_inertia: dynamic.inverse_inertia,
+            centre: start * dynamic.centre,
+        });
+        Way { start, end, body }
+    }
+
+    /// Cloth has moved a body to this pose, at this velocity (m/s).
+    pub fn moved(&mut self, entity: Entity, pose: Isometry3d, velocity: Vec3) {
+        if let Some(past) = self.known.get_mut(&entity) {
+            (past.end, past.speed) = (pose, velocity.length());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f32, speed: f32) -> Mover {
+        let dynamic = Dynamic {
+            velocity: Vec3::X * speed,
+            inverse_mass: 0.5,
+            inverse_inertia: Mat3A::IDENTITY,
+            centre: Vec3A::Y,
+        };
+        Mover { pose: Isometry3d::from_translation(Vec3::X * x), dynamic: Some(dynamic) }
+    }
+
+    fn start_of(bodies: &mut Bodies, mover: &Mover) -> f32 {
+        bodies.begin(0.1);
+        bodies.way(Entity::PLACEHOLDER, mover).start.translation.x
+    }
+
+    #[test]
+    fn a_body_comes_from_where_the_latest_step_left_it() {
+        let mut bodies = Bodies::default();
+        assert_eq!(start_of(&mut bodies, &at(1.0, 5.0)), 1.0);
+        assert_eq!(start_of(&mut bodies, &at(1.5, 5.0)), 1.0);
+        bodies.moved(Entity::PLACEHOLDER, Isometry3d::from_translation(Vec3::X * 1.6), Vec3::X * 6.0);
+        assert_eq!(start_of(&mut bodies, &at(2.1, 5.0)), 1.6);
+    }
+
+    #[test]
+    fn a_body_that_is_put_elsewhere_sweeps_nothing() {
+        let mut bodies = Bodies::default();
+        start_of(&mut bodies, &at(0.0, 5.0));
+        assert_eq!(start_of(&mut bodies, &at(3.0, 5.0)), 3.0);
+        let led = Mover { dynamic: None, ..at(9.0, 0.0) };
+        assert_eq!(start_of(&mut bodies, &led), 3.0, "one that its user moves does sweep");
+    }
+
+    #[test]
+    fn a_body_that_was_away_comes_out_of_nowhere() {
+        let mut bodies = Bodies::default();
+        start_of(&mut bodies, &at(0.0, 5.0));
+        bodies.begin(0.1);
+        assert_eq!(start_of(&mut bodies, &at(0.2, 5.0)), 0.2);
+    }
+
+    #[test]
+    fn the_centre_of_mass_is_that_at_the_start() {
+        let mut bodies = Bodies::default();
+        start_of(&mut bodies, &at(1.0, 5.0));
+        bodies.begin(0.1);
+        let way = bodies.way(Entity::PLACEHOLDER, &at(1.5, 5.0));
+        assert_eq!(way.body.map(|body| body.centre), Some(Vec3A::new(1.0, 1.0, 0.0)));
+    }
+}
