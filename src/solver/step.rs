@@ -155,6 +155,7 @@ impl<'a> Plan<'a> {
             Method::Explicit => {
                 scratch.lanes.load(particles, topology.order(), scratch.instructions);
                 grab::take_up(&mut scratch.lanes, ctx.grabs);
+                scratch.mounts.begin(&mut scratch.lanes, topology, ctx);
                 let (needed, scale) =
                     explicit::stable_substeps(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
                 (ctx.max_substeps.max(1), needed, scale, &[][..])

@@ -101,11 +101,19 @@ impl Astray {
         self.angular += (arm - self.turn * self.load.offset).cross(momentum);
     }
 
-    /// Works out the velocities from what has been taken. Returns by how much they have changed.
-    fn gain(&mut self) -> [Vec3A; 2] {
+    /// Works out the velocities from what has been taken, none of an anchor's more than `most` (m/s): a body whose engine
+    /// knows nothing of a load a thousand times its own is thrown about by it. Returns by how much they have changed.
+    fn gain(&mut self, most: f32) -> [Vec3A; 2] {
         let before = [self.velocity, self.spin];
         self.spin = self.load.inverse_inertia * self.angular;
         self.velocity = self.linear * self.load.inverse_mass - self.spin.cross(self.turn * self.load.offset);
+        let fastest = self.velocity.length() + self.spin.length() * self.load.reach;
+        if fastest > most {
+            let kept = most / fastest;
+            for it in [&mut self.linear, &mut self.angular, &mut self.velocity, &mut self.spin] {
+                *it *= kept;
+            }
+        }
         [self.velocity - before[0], self.spin - before[1]]
     }
 
@@ -184,7 +192,7 @@ impl Mounts {
         }
         for (body, mount) in self.bodies.iter_mut().zip(ctx.mounts) {
             body.centre = mount.body.centre + mount.way * span.end;
-            body.gain();
+            body.gain(ctx.max_velocity);
             body.go_on(body.velocity, body.spin, h);
         }
         for held in &mut self.anchors {
@@ -206,7 +214,7 @@ impl Mounts {
             body.take(body.turn * held.arm, pull);
         }
         for ((body, mount), push) in bodies.iter_mut().zip(ctx.mounts).zip(&mut *pushes) {
-            let [velocity, spin] = body.gain();
+            let [velocity, spin] = body.gain(ctx.max_velocity);
             body.go_on(velocity, spin, h);
             *push = body.push(&mount.body);
         }
@@ -242,7 +250,7 @@ mod tests {
         let body = Body { inverse_mass: 0.5, inverse_inertia: Mat3A::IDENTITY * 4.0, centre: Vec3A::ZERO };
         let mut loaded = Astray::new(Load::new(&body, || [(Vec3A::Y, 1.0)].into_iter()), Vec3A::ZERO);
         loaded.take(Vec3A::Y, Vec3A::Z);
-        loaded.gain();
+        loaded.gain(f32::INFINITY);
         let push = loaded.push(&body);
         let at_load = loaded.velocity + loaded.spin.cross(Vec3A::Y);
         assert!((push.linear + at_load - Vec3A::Z).length() < 1e-6, "1 kg and the body have it all");

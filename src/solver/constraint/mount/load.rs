@@ -7,8 +7,9 @@ use crate::solver::Body;
 /// A body with the cloth's own mass at its anchors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Load {
-    /// Number of anchors.
+    /// Number of anchors, and how far the farthest is from the body's centre of mass, m.
     pub anchors: f32,
+    pub reach: f32,
     /// Inverse mass of all, 1/kg.
     pub inverse_mass: f32,
     /// Inverse of the tensor of inertia of all about their centre of mass, 1/(kg m²).
@@ -31,7 +32,8 @@ impl Load {
             .fold(around(offset) * body.inverse_mass.recip(), |added, (arm, mass)| added + around(arm - offset) * mass);
         // (I + added)^-1, where only I^-1 is known and may have no inverse: I^-1 (1 + added I^-1)^-1.
         let part = (Mat3A::IDENTITY + added * body.inverse_inertia).inverse();
-        Self { anchors: count, inverse_mass, inverse_inertia: body.inverse_inertia * part, offset, part }
+        let reach = masses().map(|(arm, _)| arm.length()).fold(0.0, f32::max);
+        Self { anchors: count, reach, inverse_mass, inverse_inertia: body.inverse_inertia * part, offset, part }
     }
 
     /// The most that a push of 1 N s at `arm` (m) from the body's centre of mass gives it of velocity there, m/s.
