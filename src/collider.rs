@@ -184,7 +184,8 @@ pub(crate) fn gather_obstacles(
             Ok(Some((shape, end))) => {
                 let start = memory.pose.replace(end).unwrap_or(end);
                 memory.said = None;
-                let obstacle = Obstacle { shape, start, end, friction: collider.friction, body: None };
+                let friction = collider.friction;
+                let obstacle = Obstacle { shape, start, end, rounding: 0.0, friction, body: None };
                 obstacles.list.push((entity, collider.layers, obstacle));
             }
             Ok(None) => memory.pose = None,

@@ -91,9 +91,15 @@ impl<S: Clone + Send + Sync + 'static> Bridge<S> {
             if !is_finite(&start) || !is_finite(&end) {
                 continue;
             }
-            obstacles.list.extend(parts.iter().map(|Part { shape, pose, .. }| {
-                let obstacle =
-                    Obstacle { shape: shape.clone(), start: start * *pose, end: end * *pose, friction, body: way.body };
+            obstacles.list.extend(parts.iter().map(|Part { shape, pose, rounding }| {
+                let obstacle = Obstacle {
+                    shape: shape.clone(),
+                    start: start * *pose,
+                    end: end * *pose,
+                    rounding: *rounding,
+                    friction,
+                    body: way.body,
+                };
                 (collider, layers, obstacle)
             }));
         }

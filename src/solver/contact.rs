@@ -78,6 +78,8 @@ pub struct Obstacle {
     pub start: Isometry3d,
     /// Where it is when the step ends.
     pub end: Isometry3d,
+    /// By how much it is larger than its shape all around, m.
+    pub rounding: f32,
     /// Factor on the cloth's friction, no unit.
     pub friction: f32,
     /// What it takes to move it. None for what no cloth moves.
@@ -92,7 +94,7 @@ impl Obstacle {
 
     /// One that goes from `start` to `end`, which no cloth moves.
     pub fn moving(shape: impl Into<Shape>, start: Isometry3d, end: Isometry3d) -> Self {
-        Self { shape: shape.into(), start, end, friction: 1.0, body: None }
+        Self { shape: shape.into(), start, end, rounding: 0.0, friction: 1.0, body: None }
     }
 
     /// Pose at the fraction `t` (0..=1) of the step.

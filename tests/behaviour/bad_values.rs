@@ -135,7 +135,9 @@ fn cloths_are_checked_field_by_field() {
             }
             let may_be_negative = name == "Cloth::gravity_scale";
             assert_eq!(refused(-1.0).as_deref(), (!may_be_negative).then_some(name), "{name} of -1");
-            let may_be_zero = !["Cloth::max_strain", "Cloth::max_velocity"].contains(&name);
+            let must_be_positive = ["max_strain", "max_velocity", "max_depenetration_velocity", "self_distance"]
+                .map(|field| format!("Cloth::{field}"));
+            let may_be_zero = !must_be_positive.contains(&name.to_string());
             assert_eq!(refused(0.0).as_deref(), (!may_be_zero).then_some(name), "{name} of 0");
         }
         assert_eq!(refused(1.0), None, "{name} of 1");

@@ -91,7 +91,7 @@ pub(in crate::solver) fn is_any_near(particles: &Particles, ctx: &StepContext, d
     // A step ahead, and once more for what it gains in speed.
     let reach = ctx.contact_distance() + 2.0 * fastest * dt + GAINED;
     ctx.obstacles.iter().any(|obstacle| {
-        let way = obstacle.start.translation.distance(obstacle.end.translation);
+        let way = obstacle.start.translation.distance(obstacle.end.translation) + obstacle.rounding;
         let Some((place, radius)) = obstacle.ball() else {
             let Shape::Solid(solid) = obstacle.shape else { return true };
             let is_reached = |pose: &Isometry3d| {
@@ -173,9 +173,9 @@ impl Near {
         self.known = known;
         solids.clear();
         reachable.clear();
-        let distance = ctx.contact_distance();
         for (obstacle, it) in ctx.obstacles.iter().enumerate() {
             let Shape::Solid(solid) = it.shape else { continue };
+            let distance = ctx.contact_distance() + it.rounding;
             let pose = it.pose(span.start);
             let radius = solid.reach();
             let shift = pose.translation.distance(it.end.translation);

@@ -38,7 +38,8 @@ pub(super) struct Correction {
 impl Passage {
     /// That of `obstacle`, a `solid` which goes from one pose to the other within a substep of `h` seconds.
     pub fn new(solid: Solid, obstacle: &Obstacle, [start, end]: [Isometry3d; 2], ctx: &StepContext, h: f32) -> Self {
-        let (distance, friction) = (ctx.contact_distance(), ctx.material.friction * obstacle.friction);
+        let distance = ctx.contact_distance() + obstacle.rounding;
+        let friction = ctx.material.friction * obstacle.friction;
         let passage = Self { solid, start, end, distance, friction, parting: ctx.max_depenetration_velocity * h };
         if start == end { passage.unturned() } else { passage }
     }

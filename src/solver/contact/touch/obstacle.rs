@@ -112,7 +112,7 @@ impl AtObstacle {
     pub fn search(&mut self, at: &Approach, i: usize, walk: &mut Walk, fixed: &mut Vec<Fixed>, pairs: &mut Vec<Pair>) {
         let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
         let surface = cloth.surface();
-        let distance = cloth.ctx.contact_distance().max(LEAST);
+        let distance = cloth.ctx.contact_distance().max(LEAST) + obstacle.rounding;
         if let Shape::Solid(solid) = &obstacle.shape {
             draw(&mut self.outlines, at.number, i, solid, [surface.longest_edge, distance, cloth.sink()]);
         }
