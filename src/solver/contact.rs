@@ -6,11 +6,12 @@
 //! contact pushed (Müller et al., "Position Based Dynamics", 2007, section 3.6, with the normal push in place of a
 //! damping constant). There is no restitution.
 
-use bevy::math::{Isometry3d, Mat3A, Vec3A};
+use bevy::math::{Isometry3d, Mat3A, Quat, Vec3A};
 
 pub mod mesh;
 pub mod solid;
 
+mod body;
 mod closest;
 mod course;
 mod near;
@@ -24,6 +25,7 @@ mod sweep;
 pub(super) mod tangle;
 pub(super) mod touch;
 
+pub(super) use body::Bodies;
 pub use mesh::MeshShape;
 pub(super) use near::{Near, is_any_near};
 pub(super) use project::project;
@@ -62,6 +64,21 @@ pub struct Push {
     pub linear: Vec3A,
     /// Angular momentum about the body's centre of mass, N m s.
     pub angular: Vec3A,
+}
+
+/// How far a body has come off its given path by what a cloth has given to it within a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stray {
+    /// Way of its centre of mass, m.
+    pub shift: Vec3A,
+    /// Turn about it.
+    pub turn: Quat,
+}
+
+impl Default for Stray {
+    fn default() -> Self {
+        Self { shift: Vec3A::ZERO, turn: Quat::IDENTITY }
+    }
 }
 
 /// Something that cloth can't enter, on its way over one step.

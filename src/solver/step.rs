@@ -136,6 +136,7 @@ impl<'a> Plan<'a> {
         scratch: &mut Scratch,
     ) -> Option<Self> {
         let dt = ctx.dt.min(MAX_TIME_STEP);
+        scratch.bodies.begin(ctx);
         if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
             return None;
         }
@@ -245,6 +246,7 @@ impl<'a> Running<'a> {
             substep.move_freely(scratch);
         }
         anchor::advance(&mut scratch.lanes, ctx.anchors, span.end, self.dt);
+        scratch.bodies.advance(ctx, span.clone(), substep.h);
         if let Some(tethers) = ctx.tethers {
             scratch.pins.read(tethers, &scratch.lanes);
         }
