@@ -15,7 +15,7 @@ mod pushes;
 pub(crate) use bodies::{Bodies, Dynamic, Mover};
 pub(crate) use mounts::{mount_pins, note_carriers, untie_mounted};
 pub(crate) use parts::{Part, Shapes, capsule, mesh};
-pub(crate) use pushes::{Pushes, carry, collect_pushes, pushed};
+pub(crate) use pushes::{Pushes, carry, collect_pushes, strayed};
 
 /// Takes a collider of a physics engine, or all of a rigid body's, out of what cloth meets. A collider with a
 /// [`ClothCollider`](crate::prelude::ClothCollider) of its own doesn't need it: that one counts instead.

@@ -18,7 +18,7 @@ use crate::{
     parallel,
     schedule::ClothRun,
     solver::{self, Member, Particles, Scratch, StepContext, StepReport, Topology},
-    state::{ClothState, Work},
+    state::{ClothState, Given, Work},
     wind::Winds,
 };
 
@@ -82,7 +82,7 @@ fn step_group(
 ) {
     for state in &mut *states {
         state.is_taken_back = false;
-        state.work.pushes.clear();
+        state.work.given.clear();
     }
     // Paused: nothing is new to draw, and what pushes the cloth is kept until time goes on.
     if time.delta_secs() <= 0.0 {
@@ -118,11 +118,12 @@ fn step_group(
 
 /// Keeps what bodies have been given.
 fn take_pushes(work: &mut Work, scratch: &Scratch) {
-    let Work { obstacles, owners, mount_owners, pushes, .. } = work;
-    let given = obstacles.iter().zip(owners).zip(scratch.pushes());
-    let given = given.filter(|((obstacle, _), _)| obstacle.body.is_some()).map(|((_, owner), push)| (*owner, *push));
-    pushes.extend(given);
-    pushes.extend(mount_owners.iter().copied().zip(scratch.pulls().iter().copied()));
+    let Work { obstacles, owners, mount_owners, given, .. } = work;
+    let pushes = scratch.pushes().iter().zip(scratch.strays()).map(|(push, stray)| (*push, *stray));
+    let bodies = obstacles.iter().zip(&*owners).zip(pushes).filter(|((obstacle, _), _)| obstacle.body.is_some());
+    let bodies = bodies.map(|((_, owner), pushed)| (*owner, pushed));
+    let mounts = mount_owners.iter().copied().zip(scratch.pulls().iter().copied());
+    given.extend(bodies.chain(mounts).map(|(to, (push, stray))| Given { to, push, stray }));
 }
 
 /// What of a cloth goes into a step.
@@ -191,7 +192,7 @@ fn end_step(state: &mut ClothState, report: Option<StepReport>) {
     if state.is_taken_back {
         state.particles.position.clone_from(&state.step_start);
         state.particles.velocity.fill(Vec3A::ZERO);
-        state.work.pushes.clear();
+        state.work.given.clear();
     }
 }
 

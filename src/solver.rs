@@ -36,7 +36,7 @@ pub use constraint::{
     tether::{Tether, Tethers},
 };
 pub use contact::{
-    Body, Obstacle, Push, Shape,
+    Body, Obstacle, Push, Shape, Stray,
     mesh::{MeshShape, TriangleMesh},
     solid::{Solid, TaperedCapsule},
 };

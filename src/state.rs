@@ -16,7 +16,7 @@ use crate::{
     grab::Grabs,
     solver::{
         self, Anchor, Effort, Energy, Grab, Material, Mount, Mounted, Obstacle, Particles, Push, StepReport, Strain,
-        Tether, Tethers, Topology, Weave, WindSource,
+        Stray, Tether, Tethers, Topology, Weave, WindSource,
     },
 };
 
@@ -102,6 +102,16 @@ pub(crate) struct Said {
     pub coarseness: f32,
 }
 
+/// What a cloth has given to a body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Given {
+    /// The body, or one of its colliders.
+    pub to: Entity,
+    pub push: Push,
+    /// How far it has come off its path by that.
+    pub stray: Stray,
+}
+
 /// Buffers that a step fills anew.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Work {
@@ -115,7 +125,7 @@ pub(crate) struct Work {
     pub mount_owners: Vec<Entity>,
     pub mounted: Vec<Mounted>,
     /// What the bodies among all these have been given.
-    pub pushes: Vec<(Entity, Push)>,
+    pub given: Vec<Given>,
     pub winds: Vec<WindSource>,
 }
 

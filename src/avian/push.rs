@@ -8,7 +8,7 @@ use avian3d::{
 use bevy::prelude::*;
 
 use super::gather::pose;
-use crate::engine::{Bridge, Pushes, carry, pushed};
+use crate::engine::{Bridge, Pushes, carry, strayed};
 
 /// Gives the bodies what cloth has lost to them in the latest step. That wakes those that sleep.
 pub(super) fn push_bodies(
@@ -26,7 +26,7 @@ pub(super) fn push_bodies(
         let velocity = body.effective_inverse_mass() * Vec3::from(given.push.linear);
         let turn = Mat3::from(body.effective_global_angular_inertia().inverse()) * Vec3::from(given.push.angular);
         let from = pose(&body.position, &body.rotation);
-        let to = pushed(from, body.center_of_mass.0, &given.push);
+        let to = strayed(from, body.center_of_mass.0, &given.stray);
         body.position.0 = to.translation.into();
         body.rotation.0 = to.rotation;
         body.linear_velocity.0 += velocity;

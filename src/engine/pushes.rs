@@ -5,15 +5,11 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{cloth::ClothStatus, solver::Push, state::ClothState};
-
-/// What a cloth has given to a body.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Given {
-    /// The body, or one of its colliders.
-    pub to: Entity,
-    pub push: Push,
-}
+use crate::{
+    cloth::ClothStatus,
+    solver::{Push, Stray},
+    state::{ClothState, Given},
+};
 
 /// What all cloths have given in the latest step, in a fixed order: that of the colliders, then of the cloths.
 #[derive(Resource, Debug, Default)]
@@ -29,26 +25,26 @@ pub(crate) fn collect_pushes(mut cloths: Query<(Entity, &ClothStatus, &mut Cloth
     buffer.clear();
     for (cloth, status, mut state) in &mut cloths {
         let work = &mut state.bypass_change_detection().work;
-        let given = work.pushes.drain(..).enumerate();
+        let given = work.given.drain(..).enumerate();
         if *status == ClothStatus::Ready {
-            buffer.extend(given.map(|(number, (to, push))| (Given { to, push }, cloth, number)));
+            buffer.extend(given.map(|(number, given)| (given, cloth, number)));
         }
     }
     buffer.sort_unstable_by_key(|&(given, cloth, number)| (given.to, cloth, number));
     list.clear();
     let is_felt = |given: &Given| {
-        let Push { linear, angular, shift, turn } = given.push;
+        let Given { push: Push { linear, angular }, stray: Stray { shift, turn }, .. } = given;
         let is_finite = linear.is_finite() && angular.is_finite() && shift.is_finite() && turn.is_finite();
-        is_finite && (linear != Vec3A::ZERO || angular != Vec3A::ZERO)
+        is_finite && (*linear != Vec3A::ZERO || *angular != Vec3A::ZERO)
     };
     list.extend(buffer.iter().map(|&(given, ..)| given).filter(is_felt));
 }
 
-/// Where a push has brought a body that was at `pose`, whose centre of mass is at `centre` (m) in its frame.
-pub(crate) fn pushed(pose: Isometry3d, centre: Vec3, push: &Push) -> Isometry3d {
-    let rotation = (push.turn * pose.rotation).normalize();
+/// Where a body is that was at `pose`, with its centre of mass at `centre` (m) in its frame, and has strayed.
+pub(crate) fn strayed(pose: Isometry3d, centre: Vec3, stray: &Stray) -> Isometry3d {
+    let rotation = (stray.turn * pose.rotation).normalize();
     let centre = Vec3A::from(centre);
-    let world_centre = pose * centre + push.shift;
+    let world_centre = pose * centre + stray.shift;
     Isometry3d { rotation, translation: world_centre - rotation * centre }
 }
 

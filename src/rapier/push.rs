@@ -8,7 +8,7 @@ use bevy_rapier3d::{
 };
 
 use super::shapes;
-use crate::engine::{Bridge, Pushes, carry, pushed};
+use crate::engine::{Bridge, Pushes, carry, strayed};
 
 /// Gives the bodies what cloth has lost to them in the latest step. That wakes those that sleep.
 pub(super) fn push_bodies(
@@ -31,7 +31,7 @@ pub(super) fn push_bodies(
         let velocity = mass.effective_inv_mass * Vec3::from(given.push.linear);
         let turn = mass.effective_world_inv_inertia * Vec3::from(given.push.angular);
         let from = shapes::isometry(body.position());
-        let to = pushed(from, body.local_center_of_mass(), &given.push);
+        let to = strayed(from, body.local_center_of_mass(), &given.stray);
         body.set_position(Pose::from_parts(to.translation.into(), to.rotation), true);
         body.set_linvel(body.linvel() + velocity, true);
         body.set_angvel(body.angvel() + turn, true);

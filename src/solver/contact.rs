@@ -11,6 +11,7 @@ use bevy::math::{Isometry3d, Mat3A, Quat, Vec3A};
 pub mod mesh;
 pub mod solid;
 
+mod body;
 mod closest;
 mod course;
 mod inside;
@@ -25,6 +26,7 @@ mod sweep;
 pub(super) mod tangle;
 pub(super) mod touch;
 
+pub(super) use body::Bodies;
 pub use mesh::MeshShape;
 pub(super) use near::{Near, is_any_near};
 pub(super) use project::project;
@@ -63,10 +65,21 @@ pub struct Push {
     pub linear: Vec3A,
     /// Angular momentum about the body's centre of mass, N m s.
     pub angular: Vec3A,
-    /// How far the body's centre of mass has come off its way by that until the step's end, m.
+}
+
+/// How far a body has come off its given path by what a cloth has given to it within a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stray {
+    /// Way of its centre of mass, m.
     pub shift: Vec3A,
-    /// By how much the body has turned by that.
+    /// Turn about it.
     pub turn: Quat,
+}
+
+impl Default for Stray {
+    fn default() -> Self {
+        Self { shift: Vec3A::ZERO, turn: Quat::IDENTITY }
+    }
 }
 
 /// Something that cloth can't enter, on its way over one step.

@@ -3,7 +3,7 @@
 use bevy::math::Vec3A;
 
 use super::{
-    Instructions, Lanes, Push,
+    Instructions, Lanes, Push, Stray,
     constraint::{
         beads::Beads,
         bend::{Bending, Ways},
@@ -12,7 +12,7 @@ use super::{
         plate::Plate,
         tether::PinPlaces,
     },
-    contact::{Near, touch::Touch},
+    contact::{Bodies, Near, touch::Touch},
     force::wind::Air,
     lanes::Points,
     share::Bench,
@@ -53,24 +53,30 @@ pub struct Scratch {
     pub(super) bench: Bench,
     /// The solids around.
     pub(super) near: Near,
+    /// The bodies among the obstacles.
+    pub(super) bodies: Bodies,
     /// What is touched with triangles and edges: of the first of the cloths that are stepped together.
     pub(super) touch: Touch,
     /// What each thread needs of its own that shares a large cloth.
     pub(super) benches: Vec<Bench>,
-    /// What the bodies among the obstacles were given.
-    pub(super) pushes: Vec<Push>,
 }
 
 impl Scratch {
-    /// What the latest step has given to the body of each obstacle, in the order of
-    /// [`StepContext::obstacles`](super::StepContext::obstacles).
+    /// What the cloth has given to each of the [`obstacles`](super::StepContext::obstacles) in the latest step: nothing to
+    /// those that are no bodies.
     pub fn pushes(&self) -> &[Push] {
-        &self.pushes
+        &self.bodies.pushes
     }
 
-    /// What the latest step has given to each body that anchors are fixed to, in the order of
-    /// [`StepContext::mounts`](super::StepContext::mounts).
-    pub fn pulls(&self) -> &[Push] {
-        &self.mounts.pushes
+    /// How far each of them has come off its path by that until the step's end. Who moves the bodies by it as well has them
+    /// where the cloth has seen them last.
+    pub fn strays(&self) -> &[Stray] {
+        &self.bodies.strays
+    }
+
+    /// What the cloth has given to each of the [`mounts`](super::StepContext::mounts) in the latest step, and how far that
+    /// has come off its path by it.
+    pub fn pulls(&self) -> &[(Push, Stray)] {
+        &self.mounts.pulls
     }
 }

@@ -138,6 +138,7 @@ impl<'a> Plan<'a> {
         scratch: &mut Scratch,
     ) -> Option<Self> {
         let dt = ctx.dt.min(MAX_TIME_STEP);
+        scratch.bodies.begin(ctx);
         if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
             return None;
         }
@@ -259,6 +260,7 @@ impl<'a> Running<'a> {
         anchor::advance(&mut scratch.lanes, ctx.anchors, span.end, self.dt);
         let Scratch { lanes, mounts, applied_force, .. } = &mut **scratch;
         mounts.advance(lanes, ctx, span.clone(), self.dt, substep.applied(applied_force));
+        scratch.bodies.advance(ctx, span.clone(), substep.h);
         if let Some(tethers) = ctx.tethers {
             scratch.pins.read(tethers, &scratch.lanes);
         }

@@ -3,6 +3,7 @@
 mod air;
 mod bench_bed;
 mod bending;
+mod bodies;
 mod boundaries;
 mod contact;
 mod convergence;

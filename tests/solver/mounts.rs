@@ -51,11 +51,11 @@ impl Ball {
         let body = Body { inverse_mass: 1.0 / self.mass, inverse_inertia, centre: before.centre };
         bed.mounts = vec![Mount { body, way: self.centre - before.centre }];
         bed.step(dt);
-        let push = bed.scratch.pulls()[0];
+        let (push, stray) = bed.scratch.pulls()[0];
         self.velocity += push.linear / self.mass;
         self.spin += push.angular / self.inertia();
-        self.centre += push.shift;
-        self.turn = (push.turn * self.turn).normalize();
+        self.centre += stray.shift;
+        self.turn = (stray.turn * self.turn).normalize();
     }
 
     fn place(&self, arm: Vec3A) -> Vec3A {

@@ -15,7 +15,7 @@ use core::ops::Range;
 
 use bevy::math::{Quat, Vec3A};
 
-use crate::solver::{Anchor, Body, Lanes, Push, StepContext, Topology, lanes::Points};
+use crate::solver::{Anchor, Body, Lanes, Push, StepContext, Stray, Topology, lanes::Points};
 
 mod load;
 
@@ -44,8 +44,8 @@ pub struct Mounted {
 pub(in crate::solver) struct Mounts {
     bodies: Vec<Astray>,
     anchors: Vec<Held>,
-    /// What each body has been given.
-    pub pushes: Vec<Push>,
+    /// What each body has been given, and how far it has come off its path by that.
+    pub pulls: Vec<(Push, Stray)>,
 }
 
 /// How a body has come off its way.
@@ -131,17 +131,16 @@ impl Astray {
 
     /// What the body itself has been given.
     fn push(&self, body: &Body) -> Push {
-        let (linear, angular) = (self.velocity / body.inverse_mass, self.load.part * self.angular);
-        Push { linear, angular, shift: self.shift, turn: self.turn }
+        Push { linear: self.velocity / body.inverse_mass, angular: self.load.part * self.angular }
     }
 }
 
 impl Mounts {
     /// Begins a step. From now on anchors on bodies can be moved, until they [`rest`](Self::rest).
     pub fn begin(&mut self, lanes: &mut Lanes, topology: &Topology, ctx: &StepContext) {
-        let Self { bodies, anchors, pushes } = self;
-        pushes.clear();
-        pushes.resize(ctx.mounts.len(), Push::default());
+        let Self { bodies, anchors, pulls } = self;
+        pulls.clear();
+        pulls.resize(ctx.mounts.len(), (Push::default(), Stray::default()));
         anchors.clear();
         anchors.extend(ctx.mounted.iter().map(|it| {
             let (anchor, mount) = (ctx.anchors[it.anchor as usize], it.mount as usize);
@@ -207,16 +206,16 @@ impl Mounts {
     /// Gives the bodies what has pulled at their anchors for `h` seconds, puts these where the bodies have them, and has
     /// them rest.
     pub fn settle(&mut self, lanes: &mut Lanes, ctx: &StepContext, h: f32) {
-        let Self { bodies, anchors, pushes } = self;
+        let Self { bodies, anchors, pulls } = self;
         for held in &*anchors {
             let pull = (lanes.position.get(held.slot) - held.place) * (held.mass / h);
             let body = &mut bodies[held.mount];
             body.take(body.turn * held.arm, pull);
         }
-        for ((body, mount), push) in bodies.iter_mut().zip(ctx.mounts).zip(&mut *pushes) {
+        for ((body, mount), pull) in bodies.iter_mut().zip(ctx.mounts).zip(&mut *pulls) {
             let [velocity, spin] = body.gain(ctx.max_velocity);
             body.go_on(velocity, spin, h);
-            *push = body.push(&mount.body);
+            *pull = (body.push(&mount.body), Stray { shift: body.shift, turn: body.turn });
         }
         for held in anchors {
             held.place = bodies[held.mount].place(held.arm);

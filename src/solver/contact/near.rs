@@ -8,7 +8,7 @@ use core::ops::Range;
 use bevy::math::{Isometry3d, Vec3A};
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
-use super::{MeshShape, Obstacle, Shape, project::Stretches, sweep};
+use super::{Bodies, MeshShape, Obstacle, Shape, Stray, project::Stretches, sweep};
 use crate::solver::{
     Lanes, Particles, StepContext,
     lanes::{Block, Run},
@@ -45,6 +45,8 @@ pub(super) struct NearSolid {
     pub obstacle: usize,
     /// Where it was when the particles were at their start.
     pose: Isometry3d,
+    /// How far it had come off its path by then.
+    stray: Stray,
     /// The farthest from its origin that anything happens, m.
     far: f32,
     /// Its stretches.
@@ -129,26 +131,36 @@ impl Near {
     }
 
     /// Follows the particles in the part `span` of the step, and finds out anew what is near where one has come too far.
-    pub fn follow(&mut self, lanes: &mut Lanes, ctx: &StepContext, span: Range<f32>, instructions: Instructions) {
+    pub fn follow(
+        &mut self,
+        lanes: &mut Lanes,
+        ctx: &StepContext,
+        span: Range<f32>,
+        bodies: &Bodies,
+        instructions: Instructions,
+    ) {
         let stretches = lanes.inverse_mass.len().div_ceil(STRETCH);
         self.moved.resize(stretches, 0.0);
         let run = lanes.whole();
         if self.known >= 0.0 {
             self.measure(&run, instructions);
-            let way = self.farthest();
-            if way <= self.known {
+            if self.farthest(bodies) <= self.known {
                 return;
             }
         }
         self.start.clear();
         self.start.extend_from_slice(run.previous);
         self.measure(&run, instructions);
-        self.find(&run, ctx, span, instructions);
+        self.find(&run, ctx, span, bodies, instructions);
     }
 
-    /// How far any particle has come, m.
-    fn farthest(&self) -> f32 {
-        self.moved.iter().copied().fold(0.0, f32::max)
+    /// How far any particle has come, and any solid off its path, m.
+    fn farthest(&self, bodies: &Bodies) -> f32 {
+        let of_solids = self.solids.iter().map(|solid| {
+            let stray = bodies.strays[solid.obstacle];
+            stray.shift.distance(solid.stray.shift) + sweep::turn_between(stray.turn, solid.stray.turn, solid.far)
+        });
+        self.moved.iter().copied().chain(of_solids).fold(0.0, f32::max)
     }
 
     fn measure(&mut self, run: &Run, instructions: Instructions) {
@@ -157,7 +169,7 @@ impl Near {
     }
 
     /// Finds the solids and stretches that may touch each other in what is left of the step, from `span` on.
-    fn find(&mut self, run: &Run, ctx: &StepContext, span: Range<f32>, instructions: Instructions) {
+    fn find(&mut self, run: &Run, ctx: &StepContext, span: Range<f32>, bodies: &Bodies, instructions: Instructions) {
         let Self { solids, reachable, start, balls, moved, .. } = self;
         balls.resize(moved.len(), Ball { centre: Vec3A::ZERO, radius: 0.0 });
         dispatch!(instructions.level(), simd => enclose(simd, balls, start, run));
@@ -167,29 +179,34 @@ impl Near {
         });
         let cloth = Ball::around(low, high);
         let left = (1.0 - span.start) / (span.end - span.start);
-        let mut known = 2.0 * self.moved.iter().copied().fold(0.0, f32::max) * left + GAINED;
+        let mut known = 2.0 * moved.iter().copied().fold(0.0, f32::max) * left + GAINED;
         let ways = ctx.obstacles.iter().map(|o| o.start.translation.distance(o.end.translation));
         known += ways.fold(0.0, f32::max);
         self.known = known;
         solids.clear();
         reachable.clear();
+        solids.reserve(ctx.obstacles.len());
         for (obstacle, it) in ctx.obstacles.iter().enumerate() {
             let Shape::Solid(solid) = it.shape else { continue };
             let distance = ctx.contact_distance() + it.rounding;
-            let pose = it.pose(span.start);
-            let radius = solid.reach();
-            let shift = pose.translation.distance(it.end.translation);
+            let (path, [pose, _]) = (it.pose(span.start), bodies.poses(ctx, obstacle, span.clone()));
             let far = pose.translation.distance(cloth.centre) + cloth.radius + known;
+            // What cloth moves comes off its path.
+            let off = if it.body.is_some() { known } else { 0.0 };
             // A ball around it holds it however it turns.
-            let gap = |ball: &Ball| pose.translation.distance(ball.centre) - ball.radius - radius - distance;
-            if gap(&cloth) - shift > known {
+            let shift = path.translation.distance(it.end.translation) + off;
+            let radius = solid.reach() + distance + shift;
+            let gap = |ball: &Ball| pose.translation.distance(ball.centre) - ball.radius - radius;
+            if gap(&cloth) > known {
                 continue;
             }
-            let way = sweep::way_between(&pose, &it.end, far);
+            let way = sweep::way_between(&path, &it.end, far) + off;
             let to_local = pose.inverse();
             let first = reachable.len();
+            // For all that it can be: a step doesn't allocate because the cloth comes nearer.
+            reachable.reserve(balls.len());
             for (stretch, ball) in balls.iter().enumerate() {
-                if ball.radius < 0.0 || gap(ball) - shift > known {
+                if ball.radius < 0.0 || gap(ball) > known {
                     continue;
                 }
                 let clearance = solid.surface(to_local.transform_point(ball.centre)).distance - ball.radius - distance;
@@ -198,20 +215,20 @@ impl Near {
                 }
             }
             if reachable.len() > first {
-                solids.push(NearSolid { obstacle, pose, far, reachable: first..reachable.len() });
+                let stray = bodies.strays[obstacle];
+                solids.push(NearSolid { obstacle, pose, stray, far, reachable: first..reachable.len() });
             }
         }
     }
 
-    /// The stretches that a solid may touch on its way.
-    pub(super) fn stretches(&mut self, number: usize, poses: [Isometry3d; 2]) -> Stretches<'_> {
+    /// The stretches that a solid may touch.
+    pub(super) fn stretches(&mut self, number: usize) -> Stretches<'_> {
         let NearSolid { far, reachable, pose, .. } = &self.solids[number];
-        let [before, after] = poses.map(|to| sweep::way_between(pose, &to, *far));
         Stretches {
             reachable: &self.reachable[reachable.clone()],
             moved: &mut self.moved,
             start: &self.start,
-            way: before.max(after),
+            pose: *pose,
             far: *far,
         }
     }

@@ -2,15 +2,15 @@
 
 use core::ops::Range;
 
-use bevy::math::{Quat, Vec3A};
-use fearless_simd::{dispatch, f32x8, prelude::*};
+use bevy::math::{Isometry3d, Quat, Vec3A};
+use fearless_simd::{dispatch, f32x8, mask32x8, prelude::*};
 
 use super::{
-    Shape, Solid,
+    Bodies, Shape, Solid,
     course::{Course, Moving, Shifted, Turned},
     near::{Reachable, STRETCH},
     solid::Field,
-    sweep::Passage,
+    sweep::{self, Passage},
 };
 use crate::solver::{
     Scratch, StepContext,
@@ -18,27 +18,32 @@ use crate::solver::{
     simd::{Instructions, Vec3x8, lane},
 };
 
+mod push;
+
+use push::{Hold, Movable, Still};
+
 /// Projects all free particles out of all solids within the part `span` (0..=1) of the step, a substep of `h` seconds.
 /// Returns the number of contacts.
 pub(in crate::solver) fn project(scratch: &mut Scratch, ctx: &StepContext, span: Range<f32>, h: f32) -> u32 {
-    let Scratch { lanes, near, instructions, .. } = scratch;
-    near.follow(lanes, ctx, span.clone(), *instructions);
+    let Scratch { lanes, near, bodies, instructions, .. } = scratch;
+    near.follow(lanes, ctx, span.clone(), bodies, *instructions);
     let mut run = lanes.whole();
     let mut contacts = 0;
     for number in 0..near.solids.len() {
-        let obstacle = &ctx.obstacles[near.solids[number].obstacle];
-        let Shape::Solid(solid) = obstacle.shape else { continue };
-        let poses = [span.start, span.end].map(|t| obstacle.pose(t));
-        let passage = Passage::new(solid, obstacle, poses, ctx, h);
-        let stretches = near.stretches(number, poses);
-        contacts += match &passage.solid {
-            Solid::Sphere(field) => past(field, &passage, &mut run, stretches, *instructions),
-            Solid::Cuboid(field) => past(field, &passage, &mut run, stretches, *instructions),
-            Solid::Capsule(field) => past(field, &passage, &mut run, stretches, *instructions),
-            Solid::TaperedCapsule(field) => past(field, &passage, &mut run, stretches, *instructions),
-            Solid::Cylinder(field) => past(field, &passage, &mut run, stretches, *instructions),
-            Solid::Cone(field) => past(field, &passage, &mut run, stretches, *instructions),
-            Solid::HalfSpace(field) => past(field, &passage, &mut run, stretches, *instructions),
+        let obstacle = near.solids[number].obstacle;
+        let Shape::Solid(solid) = ctx.obstacles[obstacle].shape else { continue };
+        let poses = bodies.poses(ctx, obstacle, span.clone());
+        let passage = Passage::new(solid, &ctx.obstacles[obstacle], poses, ctx, h);
+        let stretches = near.stretches(number);
+        let mut past = Past { passage, obstacle, bodies, run: &mut run, stretches, instructions: *instructions };
+        contacts += match past.passage.solid {
+            Solid::Sphere(field) => past.go(&field),
+            Solid::Cuboid(field) => past.go(&field),
+            Solid::Capsule(field) => past.go(&field),
+            Solid::TaperedCapsule(field) => past.go(&field),
+            Solid::Cylinder(field) => past.go(&field),
+            Solid::Cone(field) => past.go(&field),
+            Solid::HalfSpace(field) => past.go(&field),
         };
     }
     contacts
@@ -51,104 +56,173 @@ pub(super) struct Stretches<'a> {
     pub moved: &'a mut [f32],
     /// Where that was, m.
     pub start: &'a [Block],
-    /// How far the obstacle has come since then at most, m.
-    pub way: f32,
+    /// Pose of the obstacle then.
+    pub pose: Isometry3d,
     /// The farthest from its origin that anything happens, m.
     pub far: f32,
 }
 
-fn past(field: &impl Field, passage: &Passage, run: &mut Run, stretches: Stretches, instructions: Instructions) -> u32 {
-    let level = instructions.level();
-    if passage.moves() {
-        dispatch!(level, simd => past_stretches::<_, Moving<_>>(simd, field, passage, run, stretches))
-    } else if passage.end.rotation == Quat::IDENTITY {
-        dispatch!(level, simd => past_stretches::<_, Shifted<_>>(simd, field, passage, run, stretches))
-    } else {
-        dispatch!(level, simd => past_stretches::<_, Turned<_>>(simd, field, passage, run, stretches))
-    }
+/// A cloth on its way past an obstacle.
+struct Past<'a, 'b> {
+    passage: Passage,
+    /// Number of the obstacle.
+    obstacle: usize,
+    bodies: &'a mut Bodies,
+    run: &'a mut Run<'b>,
+    stretches: Stretches<'a>,
+    instructions: Instructions,
 }
 
-#[inline(always)]
-fn past_stretches<S: Simd, C: Course<S>>(
-    simd: S,
-    field: &impl Field,
-    passage: &Passage,
-    run: &mut Run,
-    stretches: Stretches,
-) -> u32 {
-    let Passage { distance, friction, parting, .. } = passage;
-    let course = C::new(simd, passage);
-    let zero = f32x8::splat(simd, 0.0);
-    let drift = passage.way(stretches.far);
-    let mut contacts = 0;
-    for reachable in stretches.reachable {
-        let moved = &mut stretches.moved[reachable.stretch];
-        if reachable.clearance > *moved + stretches.way {
-            continue;
+/// What touches a surface in a block.
+struct Touching<S: Simd> {
+    place: Vec3x8<S>,
+    before: Vec3x8<S>,
+    inverse_mass: f32x8<S>,
+    /// Those that do.
+    touches: mask32x8<S>,
+    /// Outward normal of the surface.
+    normal: Vec3x8<S>,
+    /// How far each came to be behind the surface within the substep, m.
+    gained: f32x8<S>,
+    /// How far each leaves of what it was inside before, m.
+    parted: f32x8<S>,
+    /// Way past the surface, m.
+    slide: Vec3x8<S>,
+    /// Which lanes see another side of the shape than before.
+    swept: u64,
+}
+
+impl Past<'_, '_> {
+    fn go(&mut self, field: &impl Field) -> u32 {
+        let level = self.instructions.level();
+        if self.bodies.get(self.obstacle).is_some() {
+            dispatch!(level, simd => self.pass::<_, Moving<_>, Movable>(simd, field))
+        } else if self.passage.moves() {
+            dispatch!(level, simd => self.pass::<_, Moving<_>, Still>(simd, field))
+        } else if self.passage.end.rotation == Quat::IDENTITY {
+            dispatch!(level, simd => self.pass::<_, Shifted<_>, Still>(simd, field))
+        } else {
+            dispatch!(level, simd => self.pass::<_, Turned<_>, Still>(simd, field))
         }
-        let mut farthest = zero;
-        let first = reachable.stretch * STRETCH;
-        for block in first..(first + STRETCH).min(run.position.len()) {
-            let (place, before) = (Vec3x8::load(simd, &run.position[block]), Vec3x8::load(simd, &run.previous[block]));
-            let local = course.to_local(place);
-            let after = field.seen(local);
-            // A particle that is farther away than it can have come this substep is left alone.
-            let (depth, way) = (-after.distance + *distance, place - before);
-            let beyond = (-depth - drift).max(zero);
-            let is_free = lane(simd, &run.inverse_mass[block]).simd_gt(zero);
-            let is_near = is_free & (beyond * beyond).simd_le(way.dot(way));
-            if is_near.all_false() {
+    }
+
+    #[inline(always)]
+    fn pass<S: Simd, C: Course<S>, H: Hold>(&mut self, simd: S, field: &impl Field) -> u32 {
+        let mut course = C::new(simd, &self.passage);
+        let zero = f32x8::splat(simd, 0.0);
+        let (mut way, mut drift) = self.ways();
+        let mut contacts = 0;
+        for reachable in self.stretches.reachable {
+            let mut moved = self.stretches.moved[reachable.stretch];
+            if reachable.clearance > moved + way {
                 continue;
             }
-            let old = field.seen(course.start_to_local(before));
-            let sees_the_same = old.normal.dot(after.normal).simd_gt(zero);
-            let touches = is_near & sees_the_same & depth.simd_gt(zero);
-            let mut swept = (is_near & !sees_the_same).to_bitmask();
-            if touches.any_true() {
-                let old_depth = (-old.distance + *distance).max(zero).min(depth);
-                let (gained, parted) = (depth - old_depth, old_depth.min(*parting));
-                let normal = course.turned(after.normal);
-                let parting = normal * parted;
-                let (now, left) = (place + normal * gained + parting, before + parting);
-                let way = course.past(now - left, local + after.normal * depth);
-                let slide = way - normal * way.dot(normal);
-                let (squared, hold) = (slide.dot(slide), gained * *friction);
-                let slides = squared.simd_gt(hold * hold);
-                let mut held = slide;
-                if slides.any_true() {
-                    held = (slide * (hold / squared.sqrt())).or(slides, slide);
+            let mut farthest = zero;
+            let first = reachable.stretch * STRETCH;
+            for block in first..(first + STRETCH).min(self.run.position.len()) {
+                let Some(touching) = self.meet(simd, field, &course, drift, block) else { continue };
+                let Touching { touches, mut swept, .. } = touching;
+                let known = contacts;
+                if touches.any_true() {
+                    let (now, left) = H::resolve(simd, &touching, self.passage.friction, self.bodies, self.obstacle);
+                    now.store(&mut self.run.position[block]);
+                    left.store(&mut self.run.previous[block]);
+                    let off = now - Vec3x8::load(simd, &self.stretches.start[block]);
+                    farthest = farthest.max(touches.select(off.dot(off), zero));
+                    contacts += touches.to_bitmask().count_ones();
                 }
-                let now = (now - held).or(touches, place);
-                now.store(&mut run.position[block]);
-                left.or(touches, before).store(&mut run.previous[block]);
-                let off = now - Vec3x8::load(simd, &stretches.start[block]);
-                farthest = farthest.max(touches.select(off.dot(off), zero));
-                contacts += touches.to_bitmask().count_ones();
-            }
-            while swept != 0 {
-                let i = swept.trailing_zeros() as usize;
-                swept &= swept - 1;
-                if let Some(off) = sweep(passage, run, &stretches.start[block], block, i) {
-                    farthest = farthest.max(off * off);
-                    contacts += 1;
+                while swept != 0 {
+                    let i = swept.trailing_zeros() as usize;
+                    swept &= swept - 1;
+                    if let Some(off) = self.sweep(block, i) {
+                        moved = moved.max(off);
+                        contacts += 1;
+                    }
+                }
+                if H::MOVES && contacts > known {
+                    self.follow_body();
+                    course = C::new(simd, &self.passage);
+                    (way, drift) = self.ways();
                 }
             }
+            self.stretches.moved[reachable.stretch] = farthest.reduce_max().sqrt().max(moved);
         }
-        *moved = farthest.reduce_max().sqrt().max(*moved);
+        contacts
     }
-    contacts
-}
 
-/// Takes one particle of a block, which may have come through the obstacle, back to where it came in. Says how far it is
-/// then from its place in `start`, m, if it was.
-#[cold]
-#[inline(never)]
-fn sweep(passage: &Passage, run: &mut Run, start: &Block, block: usize, i: usize) -> Option<f32> {
-    let get = |[x, y, z]: &Block| Vec3A::new(x[i], y[i], z[i]);
-    let (mut position, mut previous) = (get(&run.position[block]), get(&run.previous[block]));
-    passage.correction(position, previous)?.apply(&mut position, &mut previous, passage.friction);
-    for (points, value) in [(&mut run.position[block], position), (&mut run.previous[block], previous)] {
-        (points[0][i], points[1][i], points[2][i]) = value.into();
+    /// Goes on from where the body has been pushed to.
+    fn follow_body(&mut self) {
+        if let Some(body) = self.bodies.get(self.obstacle) {
+            self.passage.end = body.end;
+        }
     }
-    Some(position.distance(get(start)))
+
+    /// How far the obstacle has come at most since it is known what is near, and within this substep, m.
+    fn ways(&self) -> (f32, f32) {
+        if !self.passage.moves() && self.bodies.get(self.obstacle).is_none() {
+            return (0.0, 0.0);
+        }
+        let (Passage { start, end, .. }, Stretches { pose, far, .. }) = (&self.passage, &self.stretches);
+        let since = |to: &Isometry3d| sweep::way_between(pose, to, *far);
+        (since(start).max(since(end)), sweep::way_between(start, end, *far))
+    }
+
+    /// How a block meets the surface. None where it doesn't.
+    #[inline(always)]
+    fn meet<S: Simd, C: Course<S>>(
+        &self,
+        simd: S,
+        field: &impl Field,
+        course: &C,
+        drift: f32,
+        block: usize,
+    ) -> Option<Touching<S>> {
+        let Passage { distance, parting, .. } = self.passage;
+        let zero = f32x8::splat(simd, 0.0);
+        let place = Vec3x8::load(simd, &self.run.position[block]);
+        let before = Vec3x8::load(simd, &self.run.previous[block]);
+        let inverse_mass = lane(simd, &self.run.inverse_mass[block]);
+        let local = course.to_local(place);
+        let after = field.seen(local);
+        // A particle that is farther away than it can have come this substep is left alone.
+        let (depth, way) = (-after.distance + distance, place - before);
+        let beyond = (-depth - drift).max(zero);
+        let is_near = inverse_mass.simd_gt(zero) & (beyond * beyond).simd_le(way.dot(way));
+        if is_near.all_false() {
+            return None;
+        }
+        let old = field.seen(course.start_to_local(before));
+        let sees_the_same = old.normal.dot(after.normal).simd_gt(zero);
+        let old_depth = (-old.distance + distance).max(zero).min(depth);
+        let normal = course.turned(after.normal);
+        let way = course.past(way, local + after.normal * depth);
+        Some(Touching {
+            place,
+            before,
+            inverse_mass,
+            touches: is_near & sees_the_same & depth.simd_gt(zero),
+            normal,
+            gained: depth - old_depth,
+            parted: old_depth.min(f32x8::splat(simd, parting)),
+            slide: way - normal * way.dot(normal),
+            swept: (is_near & !sees_the_same).to_bitmask(),
+        })
+    }
+
+    /// Takes one particle of a block, which may have come through the obstacle, back to where it came in. Says how far it is
+    /// then from where its stretch was, m, if it was.
+    #[cold]
+    #[inline(never)]
+    fn sweep(&mut self, block: usize, i: usize) -> Option<f32> {
+        let get = |[x, y, z]: &Block| Vec3A::new(x[i], y[i], z[i]);
+        let (mut position, mut previous) = (get(&self.run.position[block]), get(&self.run.previous[block]));
+        let correction = self.passage.correction(position, previous)?;
+        let inverse_mass = self.run.inverse_mass[block][i];
+        let friction = self.passage.friction;
+        push::one(&correction, [&mut position, &mut previous], inverse_mass, friction, self.bodies, self.obstacle);
+        for (points, value) in [(&mut self.run.position[block], position), (&mut self.run.previous[block], previous)] {
+            (points[0][i], points[1][i], points[2][i]) = value.into();
+        }
+        Some(position.distance(get(&self.stretches.start[block])))
+    }
 }

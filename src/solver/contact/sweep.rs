@@ -41,7 +41,7 @@ impl Passage {
         let distance = ctx.contact_distance() + obstacle.rounding;
         let friction = ctx.material.friction * obstacle.friction;
         let passage = Self { solid, start, end, distance, friction, parting: ctx.max_depenetration_velocity * h };
-        if start == end { passage.unturned() } else { passage }
+        if start == end && obstacle.body.is_none() { passage.unturned() } else { passage }
     }
 
     /// What stays, without a rotation where it needs none.
@@ -58,11 +58,6 @@ impl Passage {
     /// Whether it goes anywhere.
     pub fn moves(&self) -> bool {
         self.start != self.end
-    }
-
-    /// The most that a place of it goes, m, which is as far as `far` from its origin.
-    pub fn way(&self, far: f32) -> f32 {
-        way_between(&self.start, &self.end, far)
     }
 
     /// The correction of a particle that went from `previous` to `position` and sees another side of the shape than
@@ -105,30 +100,14 @@ impl Passage {
     }
 }
 
-impl Correction {
-    /// Moves a particle, with friction. What was inside before the substep leaves without gaining speed from it.
-    pub fn apply(&self, position: &mut Vec3A, previous: &mut Vec3A, friction: f32) {
-        *position += self.normal * (self.gained + self.parted);
-        *previous += self.normal * self.parted;
-        let way = *position - *previous - self.surface_way;
-        let slide = way - self.normal * way.dot(self.normal);
-        let hold = friction * self.gained;
-        let length = slide.length();
-        *position -= if length > hold { slide * (hold / length) } else { slide };
-    }
-}
-
 /// The most that places go between two poses, m, which are as far as `far` from the origin.
 pub(super) fn way_between(from: &Isometry3d, to: &Isometry3d, far: f32) -> f32 {
-    // |q1 - q0| is 2 sin(angle / 4), on the shorter of the two ways around; a place goes by 2 sin(angle / 2) of its
-    // distance, which is no more than twice that.
-    let turn = 2.0 * shorter_way(from.rotation, to.rotation);
-    // Nothing turns where infinity is as far as its origin.
-    let turned = if turn > 0.0 { turn * far } else { 0.0 };
-    from.translation.distance(to.translation) + turned
+    from.translation.distance(to.translation) + turn_between(from.rotation, to.rotation, far)
 }
 
-/// Distance between two unit quaternions as rotations.
-fn shorter_way(a: Quat, b: Quat) -> f32 {
-    (a - b).length().min((a + b).length())
+/// The most that places go between two rotations, m, which are as far as `far` (m) from the origin.
+pub(super) fn turn_between(from: Quat, to: Quat, far: f32) -> f32 {
+    // |q1 - q0| is 2 sin(angle / 4), on the shorter of the two ways around; a place goes by 2 sin(angle / 2) of its
+    // distance, which is no more than twice that.
+    2.0 * far * (to - from).length().min((to + from).length())
 }
