@@ -5,6 +5,7 @@
 
 mod arguments;
 mod capture;
+mod lathe;
 mod loading;
 mod machine;
 mod mipmaps;
@@ -26,8 +27,9 @@ use bevy_drape::prelude::ATTRIBUTE_PIN;
 use bevy_panorbit_camera::PanOrbitCameraPlugin;
 use clap::Parser;
 
-use arguments::Arguments;
+pub use arguments::Arguments;
 use capture::CapturePlugin;
+pub use lathe::turned;
 #[cfg(feature = "picking")]
 pub use scenery::rest_camera_while_dragging;
 pub use scenery::{spawn_camera, spawn_ground, spawn_scenery, spawn_sky, spawn_sun};
@@ -37,7 +39,11 @@ pub use weave::{fabric_material, woven, woven_normals};
 /// An app that shows its scene in a window, or writes it to picture files where `--capture` asks for them or where
 /// no window can be opened.
 pub fn app(title: &str, help: &str) -> App {
-    let arguments = Arguments::parse();
+    app_with(Arguments::parse(), title, help)
+}
+
+/// The same for an example that has arguments of its own as well.
+pub fn app_with(arguments: Arguments, title: &str, help: &str) -> App {
     if let Err(cause) = machine::graphics_adapter() {
         fail(cause);
     }
