@@ -38,7 +38,7 @@ fn of_moduli(damping: f32) -> Material {
 /// A cloth to which all that there is happens at once.
 fn scene(mesh: impl Into<Mesh>, method: Method, material: Material) -> Bed {
     let bed = Bed::new(mesh, material).pinned([0, 4]).tethered(&[0, 4]).with_levels();
-    let mut bed = Bed { method, max_substeps: 256, ..bed };
+    let mut bed = Bed { method, max_substeps: 512, ..bed };
     if let (Method::Explicit, Elasticity::Moduli(moduli)) = (method, &mut bed.material.elasticity) {
         // What stiffens where it is torn at outgrows the substeps that the explicit method was given.
         moduli.stiffening = [0.0; 2];
