@@ -80,6 +80,21 @@ impl Bodies {
         self.moved.get(obstacle)?.as_ref()
     }
 
+    /// Whether any obstacle is a body.
+    pub fn is_any(&self) -> bool {
+        self.moved.iter().any(Option::is_some)
+    }
+
+    /// Poses of an obstacle at the start of a substep, and at the end of the part `span` of a step of `dt` seconds that begins
+    /// with that substep, if nothing touches it.
+    pub fn poses_ahead(&self, ctx: &StepContext, obstacle: usize, span: Range<f32>, dt: f32) -> [Isometry3d; 2] {
+        let it = &ctx.obstacles[obstacle];
+        match self.get(obstacle) {
+            Some(moved) => [moved.start, moved.ahead(it, span, dt)],
+            None => [span.start, span.end].map(|t| it.pose(t)),
+        }
+    }
+
     /// Poses of an obstacle at the start and at the end of the part `span` of the step.
     pub fn poses(&self, ctx: &StepContext, obstacle: usize, span: Range<f32>) -> [Isometry3d; 2] {
         match self.get(obstacle) {
@@ -142,6 +157,17 @@ impl Moved {
             let rotation = self.turn * self.path.rotation;
             Isometry3d { rotation, translation: self.centre - rotation * self.local_centre }
         };
+    }
+
+    /// Pose at the end of a part of the step that begins with this substep.
+    fn ahead(&self, obstacle: &Obstacle, span: Range<f32>, dt: f32) -> Isometry3d {
+        let left = (span.end - span.start) * dt - self.h;
+        let mut ahead = *self;
+        ahead.path = obstacle.pose(span.end);
+        ahead.shift += self.velocity * left;
+        ahead.turn = turned(self.turn, self.spin * left);
+        ahead.place();
+        ahead.end
     }
 
     fn stray(&self) -> Stray {

@@ -111,7 +111,7 @@ pub(in crate::solver) fn is_any_near(particles: &Particles, ctx: &StepContext, d
 impl Obstacle {
     /// Centre and radius of a ball around it at the start of the step, m, that holds it as well however it turns. None where
     /// there is none, or nobody knows.
-    fn ball(&self) -> Option<(Vec3A, f32)> {
+    pub(super) fn ball(&self) -> Option<(Vec3A, f32)> {
         let radius = match &self.shape {
             Shape::Solid(solid) => solid.reach(),
             Shape::Mesh(MeshShape { mesh, deformed: None }) => {

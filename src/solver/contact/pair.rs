@@ -13,7 +13,7 @@
 
 use bevy::math::Vec3A;
 
-use super::closest;
+use super::{body::Moved, closest};
 
 /// Points that features are made of: particles of all cloths that may touch, then those of obstacles.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +24,8 @@ pub struct Points {
     pub previous: Vec<Vec3A>,
     /// Inverse mass, 1/kg. Zero for those that nothing moves.
     pub inverse_mass: Vec<f32>,
+    /// Whether places before the substep have been moved too.
+    pub has_parted: bool,
 }
 
 /// What kind of features a pair has.
@@ -102,17 +104,44 @@ pub fn weighted(weights: [f32; 4], [a, b, c, d]: [Vec3A; 4]) -> Vec3A {
     a * weights[0] + b * weights[1] + c * weights[2] + d * weights[3]
 }
 
+/// The body that one of two features is of.
+#[derive(Clone, Copy, Debug)]
+pub struct OnBody<'a> {
+    pub body: &'a Moved,
+    /// From the origin of the points, m.
+    pub centre: Vec3A,
+    /// Whether it has the first feature.
+    pub is_first: bool,
+}
+
+impl OnBody<'_> {
+    /// Where the cloth is touched, from the body's centre of mass, m.
+    fn beside(&self, weights: [f32; 4], places: [Vec3A; 4]) -> Vec3A {
+        let of_cloth = if self.is_first { -1.0 } else { 1.0 };
+        weighted(weights.map(|weight| (weight * of_cloth).max(0.0)), places) - self.centre
+    }
+}
+
+/// What a body gets within a substep of h seconds, times h.
+#[derive(Clone, Copy, Debug)]
+pub struct Given {
+    /// kg m
+    pub linear: Vec3A,
+    /// About its centre of mass, kg m².
+    pub angular: Vec3A,
+}
+
 impl Pair {
     /// Brings the features as far apart as they should be, with friction. Those that were nearer before part by no more than
-    /// `most_parted` (m). True where they touched.
+    /// `most_parted` (m). Where they touched, returns what the obstacle among them got, if it is a body.
     #[inline]
-    pub fn solve(&mut self, points: &mut Points, most_parted: f32) -> bool {
+    pub fn solve(&mut self, points: &mut Points, most_parted: f32, body: Option<&OnBody>) -> Option<Given> {
         let all = self.points.map(|i| i as usize);
         let places = all.map(|i| points.position[i]);
         let farthest = self.distance + self.taper.max(0.0);
         if self.features.is_beyond(places, self.normal, farthest) {
             self.gap = farthest;
-            return false;
+            return None;
         }
         let before = all.map(|i| points.previous[i]);
         let Nearest { weights, between } = self.features.nearest(places);
@@ -131,28 +160,40 @@ impl Pair {
             Features::EdgeEdge => self.distance - self.taper * weights[3],
         };
         let target = distance.min(self.gap + most_parted);
+        let old_gap = core::mem::replace(&mut self.gap, gap);
         self.normal = normal;
-        self.gap = gap;
         if gap >= target {
-            return false;
+            return None;
         }
         let masses = all.map(|i| points.inverse_mass[i]);
         let give: f32 = weights.iter().zip(masses).map(|(weight, w)| weight * weight * w).sum();
-        if give <= 0.0 {
-            return false;
+        let beside = body.map(|on| on.beside(weights, places));
+        let meets = |direction: Vec3A| match (body, beside) {
+            (Some(on), Some(beside)) => give + on.body.inverse_mass_at(beside, direction),
+            _ => give,
+        };
+        let give_along = meets(normal);
+        if give_along <= 0.0 {
+            return None;
         }
-        let push = target - gap;
+        // What was too near before parts without gaining speed.
+        let gained = (old_gap.min(target) - gap).max(0.0);
+        let part = normal * ((target - gap - gained) / give_along);
+        let push = gained / give_along;
         let slide = weighted(weights, places) - weighted(weights, before);
-        let slide = slide - normal * slide.dot(normal);
-        let hold = self.friction * push;
-        let length = slide.length();
-        let back = if length > hold { slide * (hold / length) } else { slide };
-        let change = (normal * push - back) / give;
-        for ((&i, weight), w) in all.iter().zip(weights).zip(masses) {
-            points.position[i] += change * (weight * w);
+        let (along, length) = (slide - normal * slide.dot(normal)).normalize_and_length();
+        let mut change = normal * push;
+        if length > 0.0 {
+            change -= along * (length / meets(along)).min(self.friction * push);
         }
+        for ((&i, weight), w) in all.iter().zip(weights).zip(masses) {
+            points.position[i] += (change + part) * (weight * w);
+            points.previous[i] += part * (weight * w);
+        }
+        points.has_parted |= part != Vec3A::ZERO;
         self.gap = target;
-        true
+        let linear = if body.is_some_and(|on| on.is_first) { change } else { -change };
+        Some(Given { linear, angular: beside.map_or(Vec3A::ZERO, |beside| beside.cross(linear)) })
     }
 
     /// Whether the features met on their way from `before` to `after`.

@@ -86,6 +86,8 @@ struct Touching<S: Simd> {
     gained: f32x8<S>,
     /// How far each leaves of what it was inside before, m.
     parted: f32x8<S>,
+    /// How far each goes back that was inside before and left faster than it may, m.
+    held_back: f32x8<S>,
     /// Way past the surface, m.
     slide: Vec3x8<S>,
     /// Which lanes see another side of the shape than before.
@@ -193,17 +195,23 @@ impl Past<'_, '_> {
         }
         let old = field.seen(course.start_to_local(before));
         let sees_the_same = old.normal.dot(after.normal).simd_gt(zero);
-        let old_depth = (-old.distance + distance).max(zero).min(depth);
+        // What leaves by itself needs that much less of a push, and none that makes it too fast.
+        let (was_inside, is_inside) = ((-old.distance + distance).max(zero), depth.max(zero));
+        let old_depth = was_inside.min(is_inside);
+        let left = was_inside - old_depth;
+        let most = f32x8::splat(simd, parting);
+        let is_deep = was_inside.simd_gt(most);
         let normal = course.turned(after.normal);
         let way = course.past(way, local + after.normal * depth);
         Some(Touching {
             place,
             before,
             inverse_mass,
-            touches: is_near & sees_the_same & depth.simd_gt(zero),
+            touches: is_near & sees_the_same & (depth.simd_gt(zero) | is_deep),
             normal,
-            gained: depth - old_depth,
-            parted: old_depth.min(f32x8::splat(simd, parting)),
+            gained: is_inside - old_depth,
+            parted: old_depth.min((most - left).max(zero)),
+            held_back: is_deep.select((was_inside - depth - most).max(zero), zero),
             slide: way - normal * way.dot(normal),
             swept: (is_near & !sees_the_same).to_bitmask(),
         })

@@ -31,6 +31,8 @@ pub(super) struct Correction {
     pub gained: f32,
     /// How far it leaves of what it was inside before, m.
     pub parted: f32,
+    /// How far it goes back that was inside before and left faster than it may, m.
+    pub held_back: f32,
     /// Way of the surface at the point of contact within the substep, m.
     pub surface_way: Vec3A,
 }
@@ -68,14 +70,16 @@ impl Passage {
         let from = self.start.inverse().transform_point(previous);
         let (entry, surface) = self.enter(from, to)?;
         let gained = surface.normal.dot(entry - to);
-        let parted = (-surface.distance).clamp(0.0, self.parting);
-        if gained + parted <= 0.0 {
+        let was_inside = (-surface.distance).max(0.0);
+        let parted = was_inside.min(self.parting) + gained.min(0.0);
+        let held_back = if was_inside > self.parting { (-parted).max(0.0) } else { 0.0 };
+        if gained <= 0.0 && parted <= 0.0 && held_back <= 0.0 {
             return None;
         }
         let touched = to + surface.normal * gained;
         let surface_way = self.end.transform_point(touched) - self.start.transform_point(touched);
         let normal = self.end.rotation * surface.normal;
-        Some(Correction { normal, gained: gained.max(0.0), parted: parted + gained.min(0.0), surface_way })
+        Some(Correction { normal, gained: gained.max(0.0), parted: parted.max(0.0), held_back, surface_way })
     }
 
     /// Where the straight way from `from` to `to` enters the shape, and the surface there. Sphere tracing (Hart 1996).

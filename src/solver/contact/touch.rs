@@ -5,20 +5,21 @@
 
 use core::ops::Range;
 
-use bevy::math::{Isometry3d, Vec3A};
+use bevy::math::Vec3A;
 
 use super::{
-    Shape,
-    mesh::MeshShape,
     pair::{Pair, Points},
-    search::{self, Reach, Side, Ways},
+    search::Ways,
     surface::{Places, Surface, Walk},
-    tangle::{self, Tangle},
+    tangle::Tangle,
 };
-use crate::solver::{Lanes, SelfCollision, StepContext, step::Running};
+use crate::solver::{Lanes, Scratch, SelfCollision, StepContext, lanes, step::Running};
 
+mod cloths;
+mod lead;
 mod obstacle;
 
+use lead::BodyWay;
 use obstacle::{Approach, AtObstacle, Fixed};
 
 /// How far particles may come off their way before there is another search: this share of the mean edge at most.
@@ -29,8 +30,10 @@ const SLACK: f32 = 0.2;
 const SLACK_AT_REST: f32 = 0.0005;
 const SLACK_OF_WAY: f32 = 0.25;
 
-/// How deep the inside of a triangle may sink into what isn't sharp, m, where the margin isn't more.
+/// How deep the inside of a triangle may sink into what isn't sharp: this much at least, m, and this share of the distance
+/// that particles keep. What is seen of the cloth stays outside.
 const SINK: f32 = 0.0005;
+const SINK_OF_DISTANCE: f32 = 0.5;
 
 /// Whether two cloths meet, or one itself.
 fn meet(one: &StepContext, other: &StepContext) -> bool {
@@ -53,7 +56,7 @@ impl Running<'_> {
 
     /// How deep triangles may sink into obstacles, m.
     fn sink(&self) -> f32 {
-        self.ctx.margin.max(SINK)
+        self.ctx.margin.max(SINK).max(SINK_OF_DISTANCE * self.ctx.contact_distance())
     }
 
     fn is_fixed(&self, particle: u32) -> bool {
@@ -87,6 +90,7 @@ pub struct Touch {
     leaves: Vec<(u32, u32)>,
     walk: Walk,
     fixed: Vec<Fixed>,
+    body_ways: Vec<BodyWay>,
     at_obstacle: AtObstacle,
     is_off: bool,
 }
@@ -111,17 +115,19 @@ impl Touch {
         self.pairs.clear();
         self.tangles.clear();
         self.fixed.clear();
+        self.body_ways.clear();
         self.is_tangled.clear();
         self.is_tangled.resize(self.start.len(), false);
         if cloths.iter().any(Running::collides) {
             self.search_cloths(cloths);
         }
         for (number, cloth) in cloths.iter().enumerate() {
+            self.note_bodies(number, cloth, dt);
             let particles = self.first[number] as usize..self.first[number + 1] as usize;
             let ways = Ways { position: &self.start[particles.clone()], way: &self.way[particles] };
             let (first, total) = (self.first[number], self.start.len());
             let (slack, span) = (self.slack[number], self.searched.clone());
-            let at = Approach { cloth, number, first, total, ways, slack, span };
+            let at = Approach { cloth, number, first, total, ways, slack, span, dt };
             for i in 0..cloth.ctx.obstacles.len() {
                 self.at_obstacle.search(&at, i, &mut self.walk, &mut self.fixed, &mut self.pairs);
             }
@@ -193,93 +199,6 @@ impl Touch {
         }
     }
 
-    /// Looks for pairs between cloths, and between parts of one.
-    fn search_cloths(&mut self, cloths: &[Running]) {
-        self.places.resize_with(cloths.len().max(self.places.len()), Places::default);
-        for (i, cloth) in cloths.iter().enumerate() {
-            let particles = self.first[i] as usize..self.first[i + 1] as usize;
-            let (start, way) = (&self.start[particles.clone()], &self.way[particles]);
-            // With a ball against a robust cloth, the larger distance counts.
-            let distance = cloth.self_distance(cloth.ctx.self_collision);
-            let margin = 0.5 * distance + self.slack[i];
-            let ways = Ways { position: start, way };
-            let corners = |triangle: [u32; 3]| triangle.map(|i| start[i as usize]);
-            let bounds = |triangle| ways.bounds(triangle).grown(margin);
-            self.places[i].follow(cloth.surface(), bounds, Some(corners));
-        }
-        for i in 0..cloths.len() {
-            for j in i..cloths.len() {
-                if !meet(cloths[i].ctx, cloths[j].ctx) {
-                    continue;
-                }
-                if i != j && !self.places[i].whole().meets(&self.places[j].whole()) {
-                    continue;
-                }
-                self.search_between(cloths, i, j);
-            }
-        }
-    }
-
-    fn search_between(&mut self, cloths: &[Running], i: usize, j: usize) {
-        let Self { first, start, way, places, walk, leaves, pairs, is_tangled, tangles, slack, .. } = self;
-        let side = |i: usize| {
-            let particles = first[i] as usize..first[i + 1] as usize;
-            Side {
-                surface: cloths[i].surface(),
-                places: &places[i],
-                ways: Ways { position: &start[particles.clone()], way: &way[particles] },
-                first: first[i],
-                sharper_than: 0.0,
-                has_faces: true,
-                radii: &[],
-            }
-        };
-        let (a, b) = (side(i), side(j));
-        leaves.clear();
-        match i == j {
-            true => walk.within(a.surface, a.places, |p, q| leaves.push((p, q))),
-            false => walk.between((a.surface, a.places), (b.surface, b.places), |p, q| leaves.push((p, q))),
-        }
-        // The more careful of the two ways.
-        let mode = cloths[i].ctx.self_collision.max(cloths[j].ctx.self_collision);
-        let reach = Reach {
-            distance: 0.5 * (cloths[i].self_distance(mode) + cloths[j].self_distance(mode)),
-            slack: slack[i] + slack[j],
-            friction: 0.5 * (cloths[i].ctx.self_friction + cloths[j].ctx.self_friction),
-            rest: (i == j).then_some(&*cloths[i].topology.rest),
-        };
-        for &(p, q) in &*leaves {
-            if mode == SelfCollision::Particles {
-                search::balls_between((&a, p), (&b, q), &reach, |found| pairs.push(found.pair));
-                continue;
-            }
-            for s in a.surface.of_leaf(p) {
-                for t in b.surface.of_leaf(q) {
-                    // Of a leaf with itself, each two triangles once.
-                    if i == j && p == q && s >= t || !a.places.of_triangles[s].meets(&b.places.of_triangles[t]) {
-                        continue;
-                    }
-                    let (one, other) = (a.surface.triangles[s], b.surface.triangles[t]);
-                    if !(i == j && one.iter().any(|corner| other.contains(corner))) {
-                        let numbers = [one.map(|k| k + a.first), other.map(|k| k + b.first)];
-                        let known = tangles.len();
-                        tangle::find(numbers, start, tangles);
-                        if tangles.len() > known {
-                            for &particle in numbers.as_flattened() {
-                                is_tangled[particle as usize] = true;
-                            }
-                        }
-                    }
-                    search::pairs_between((&a, s), (&b, t), &reach, |found| pairs.push(found.pair));
-                }
-            }
-        }
-        // What is tangled finds out by the tangle's own way.
-        if !tangles.is_empty() {
-            pairs.retain(|pair| pair.points.iter().filter(|&&i| is_tangled[i as usize]).count() < 2);
-        }
-    }
-
     /// Keeps features apart within the part `span` (0..=1) of the step, a substep of `h` seconds. Returns the number of
     /// pairs that touched.
     pub fn solve(&mut self, cloths: &mut [Running], span: Range<f32>, h: f32, dt: f32) -> u32 {
@@ -300,28 +219,41 @@ impl Touch {
         let mut touched = 0;
         if !self.pairs.is_empty() || !self.tangles.is_empty() {
             self.lead_fixed(cloths, span.clone());
+            self.points.has_parted = false;
             let most_parted = cloths.iter().map(|cloth| cloth.ctx.max_depenetration_velocity).fold(0.0, f32::max) * h;
             for tangle in &self.tangles {
                 tangle.solve(&mut self.points, most_parted);
             }
-            for pair in &mut self.pairs {
-                touched += u32::from(pair.solve(&mut self.points, most_parted));
-            }
+            touched = match cloths.iter().any(|cloth| cloth.scratch.bodies.is_any()) {
+                true => self.solve_pairs_on_bodies(cloths, span.clone(), most_parted),
+                false => self.solve_pairs(most_parted),
+            };
             for (i, cloth) in cloths.iter_mut().enumerate() {
                 let particles = self.first[i] as usize..self.first[i + 1] as usize;
-                let places = &mut self.points.position[particles];
-                if cloth.offset != Vec3A::ZERO {
-                    places.iter_mut().for_each(|p| *p -= cloth.offset);
-                }
-                let order = cloth.scratch.lanes.order;
-                cloth.scratch.lanes.position.load(order, places, cloth.scratch.instructions);
-                if cloth.offset != Vec3A::ZERO {
-                    places.iter_mut().for_each(|p| *p += cloth.offset);
+                let Scratch { lanes: Lanes { order, position, previous, .. }, instructions, .. } = &mut *cloth.scratch;
+                let put = |places: &mut [Vec3A], lanes: &mut lanes::Points| {
+                    if cloth.offset != Vec3A::ZERO {
+                        places.iter_mut().for_each(|p| *p -= cloth.offset);
+                    }
+                    lanes.load(*order, places, *instructions);
+                    if cloth.offset != Vec3A::ZERO {
+                        places.iter_mut().for_each(|p| *p += cloth.offset);
+                    }
+                };
+                put(&mut self.points.position[particles.clone()], position);
+                if self.points.has_parted {
+                    put(&mut self.points.previous[particles], previous);
                 }
             }
         }
-        self.is_off = self.has_come_off(span.end);
+        self.is_off = self.has_come_off(span.end) || self.has_body_come_off(cloths, span.end);
         touched
+    }
+
+    /// Solves all pairs, and returns how many touched.
+    fn solve_pairs(&mut self, most_parted: f32) -> u32 {
+        let Self { pairs, points, .. } = self;
+        pairs.iter_mut().map(|pair| u32::from(pair.solve(points, most_parted, None).is_some())).sum()
     }
 
     /// Whether a particle has come off its way.
@@ -334,28 +266,5 @@ impl Touch {
             let mut ways = ways.zip(&self.points.position[particles]);
             ways.any(|((&start, &way), place)| place.distance_squared(start + way * share) > far)
         })
-    }
-
-    /// Brings the points of obstacles to where they are in the part `span` of the step.
-    fn lead_fixed(&mut self, cloths: &[Running], span: Range<f32>) {
-        let count = self.start.len();
-        let mut latest: Option<(u32, u32, [Isometry3d; 2])> = None;
-        for (k, fixed) in self.fixed.iter().enumerate() {
-            let cloth = &cloths[fixed.cloth as usize];
-            let obstacle = &cloth.ctx.obstacles[fixed.obstacle as usize];
-            let poses = match latest {
-                Some((cloth, obstacle, poses)) if (cloth, obstacle) == (fixed.cloth, fixed.obstacle) => poses,
-                _ => [span.start, span.end].map(|t| obstacle.pose(t)),
-            };
-            latest = Some((fixed.cloth, fixed.obstacle, poses));
-            let point = fixed.point as usize;
-            let local = |t: f32| match &obstacle.shape {
-                Shape::Solid(_) => self.at_obstacle.outline(fixed).points[point],
-                Shape::Mesh(MeshShape { mesh, deformed: None }) => mesh.points[point],
-                Shape::Mesh(MeshShape { deformed: Some([from, to]), .. }) => from[point].lerp(to[point], t),
-            };
-            self.points.previous[count + k] = poses[0].transform_point(local(span.start)) + cloth.offset;
-            self.points.position[count + k] = poses[1].transform_point(local(span.end)) + cloth.offset;
-        }
     }
 }

@@ -42,7 +42,7 @@ impl Hold for Still {
         _: &mut Bodies,
         _: usize,
     ) -> (Vec3x8<S>, Vec3x8<S>) {
-        let Touching { place, before, touches, normal, gained, parted, slide, .. } = *touching;
+        let Touching { place, before, touches, normal, gained, parted, held_back, slide, .. } = *touching;
         let (squared, hold) = (slide.dot(slide), gained * friction);
         let slides = squared.simd_gt(hold * hold);
         let mut held = slide;
@@ -50,7 +50,10 @@ impl Hold for Still {
             held = (slide * (hold / squared.sqrt())).or(slides, slide);
         }
         let parting = normal * parted;
-        ((place + normal * gained + parting - held).or(touches, place), (before + parting).or(touches, before))
+        (
+            (place + normal * (gained - held_back) + parting - held).or(touches, place),
+            (before + parting).or(touches, before),
+        )
     }
 }
 
@@ -67,7 +70,7 @@ impl Hold for Movable {
         bodies: &mut Bodies,
         obstacle: usize,
     ) -> (Vec3x8<S>, Vec3x8<S>) {
-        let Touching { place, before, inverse_mass, touches, normal, gained, parted, slide, .. } = *touching;
+        let Touching { place, before, inverse_mass, touches, normal, gained, parted, held_back, slide, .. } = *touching;
         let Some(body) = bodies.get(obstacle) else { return (place, before) };
         let zero = f32x8::splat(simd, 0.0);
         let count = touches.to_bitmask().count_ones() as f32;
@@ -91,7 +94,10 @@ impl Hold for Movable {
         let sum = |lanes: Vec3x8<S>| Vec3A::new(sum(lanes.x), sum(lanes.y), sum(lanes.z));
         bodies.push(obstacle, -sum(push), -sum(lever));
         let parting = normal * parted;
-        ((place + push * inverse_mass + parting).or(touches, place), (before + parting).or(touches, before))
+        (
+            (place + push * inverse_mass - normal * held_back + parting).or(touches, place),
+            (before + parting).or(touches, before),
+        )
     }
 }
 
@@ -123,7 +129,7 @@ pub(super) fn one(
     bodies: &mut Bodies,
     obstacle: usize,
 ) {
-    let Correction { normal, gained, parted, surface_way } = *correction;
+    let Correction { normal, gained, parted, held_back, surface_way } = *correction;
     let way = *position - *previous - surface_way;
     let slide = way - normal * way.dot(normal);
     let beside = |centre: Vec3A| *position + normal * gained - centre;
@@ -138,6 +144,6 @@ pub(super) fn one(
     if let Some(centre) = bodies.get(obstacle).map(|body| body.centre) {
         bodies.push(obstacle, -push, -beside(centre).cross(push));
     }
-    *position += push * inverse_mass + normal * parted;
+    *position += push * inverse_mass + normal * (parted - held_back);
     *previous += normal * parted;
 }

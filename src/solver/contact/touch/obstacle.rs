@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use bevy::math::Vec3A;
+use bevy::math::{Isometry3d, Vec3A};
 
 use crate::solver::{
     contact::{
@@ -34,6 +34,20 @@ pub struct Approach<'a> {
     pub slack: f32,
     /// The part of the step that the search is for.
     pub span: Range<f32>,
+    /// Duration of the step, s.
+    pub dt: f32,
+}
+
+impl Approach<'_> {
+    /// Poses of obstacle `i` now, and when the search ends.
+    fn poses(&self, i: usize) -> [Isometry3d; 2] {
+        self.cloth.scratch.bodies.poses_ahead(self.cloth.ctx, i, self.span.clone(), self.dt)
+    }
+
+    /// By how much the cloth and obstacle `i` may come off their ways together, m.
+    fn slack(&self, i: usize) -> f32 {
+        if self.cloth.ctx.obstacles[i].body.is_some() { 2.0 * self.slack } else { self.slack }
+    }
 }
 
 /// A point of an obstacle.
@@ -119,8 +133,9 @@ impl AtObstacle {
         let Self { position, way, places, leaves, found, nearest, whereabouts, number, deformed, outlines } = self;
         let Some(target) = target(obstacle, &at.span, deformed, || &outlines[at.number][i].2) else { return };
         // In the obstacle's own frame it stays, and the cloth's way is that past it.
-        let reached = distance + at.slack;
-        let bounds = to_frame(at, obstacle, position, way).grown(reached);
+        let (poses, slack) = (at.poses(i), at.slack(i));
+        let reached = distance + slack;
+        let bounds = to_frame(at, poses, position, way).grown(reached);
         if !bounds.meets(&target.places.whole()) {
             return;
         }
@@ -140,7 +155,7 @@ impl AtObstacle {
             radii: target.radii,
         };
         let friction = cloth.ctx.material.friction * obstacle.friction;
-        let reach = Reach { distance, slack: at.slack, friction, rest: None };
+        let reach = Reach { distance, slack, friction, rest: None };
         find(&a, &b, &reach, leaves, found, nearest);
         whereabouts.clear();
         if let Some(normals) = target.normals {
@@ -162,7 +177,7 @@ impl AtObstacle {
         let is_inside = |particle: u32| whereabouts.get(particle as usize) == Some(&Whereabouts::Inside);
         number.clear();
         number.resize(target.points.len(), u32::MAX);
-        let to_world = obstacle.pose(at.span.start).rotation;
+        let to_world = poses[0].rotation;
         let mut add = |mut pair: Pair, of_obstacle: core::ops::Range<usize>| {
             for k in of_obstacle {
                 let point = pair.points[k];
@@ -178,6 +193,12 @@ impl AtObstacle {
         };
         for one in &*found {
             let mut pair = one.pair;
+            if let Shape::Solid(solid) = &obstacle.shape
+                && depth_of(one, solid, position, at.first) > 2.0 * cloth.sink()
+            {
+                // Its particles find the way out.
+                continue;
+            }
             // The cloth's features come first but where a corner of the obstacle meets a face.
             let of_obstacle = match (pair.features, one.is_first_of_a) {
                 (Features::PointFace, false) => 0..1,
@@ -271,8 +292,8 @@ fn target<'a>(
 }
 
 /// Takes the cloth's ways into the obstacle's frame, and returns the box around them.
-fn to_frame(at: &Approach, obstacle: &Obstacle, position: &mut Vec<Vec3A>, way: &mut Vec<Vec3A>) -> Bounds {
-    let (now, end) = (obstacle.pose(at.span.start).inverse(), obstacle.pose(at.span.end).inverse());
+fn to_frame(at: &Approach, poses: [Isometry3d; 2], position: &mut Vec<Vec3A>, way: &mut Vec<Vec3A>) -> Bounds {
+    let [now, end] = poses.map(|pose| pose.inverse());
     position.clear();
     way.clear();
     let mut bounds = Bounds::NOTHING;
@@ -307,6 +328,16 @@ fn find(a: &Side, b: &Side, reach: &Reach, leaves: &[(u32, u32)], found: &mut Ve
             }
         }
     }
+}
+
+/// How deep the cloth's place of a pair is inside of a solid, m.
+fn depth_of(found: &Found, solid: &Solid, position: &[Vec3A], first: u32) -> f32 {
+    let Found { pair, nearest, is_first_of_a, .. } = found;
+    let of_cloth = if *is_first_of_a { 1.0 } else { -1.0 };
+    let weights = nearest.weights.map(|weight| (weight * of_cloth).max(0.0));
+    let places = pair.points.into_iter().zip(weights).filter(|&(_, weight)| weight > 0.0);
+    let place = places.map(|(point, weight)| position[(point - first) as usize] * weight).sum();
+    -solid.surface(place).distance
 }
 
 /// Whether a particle is behind the plane of a face.
