@@ -99,10 +99,7 @@ pub fn step_together(members: &mut [Member]) {
 
 /// The substeps of cloths that may touch each other.
 fn run(cloths: &mut [Running], substeps: u32, touch: &mut Touch) {
-    let may_touch = cloths.iter().any(|cloth| cloth.substep.touches);
-    if may_touch {
-        touch.begin();
-    }
+    let may_touch = touch.begin(cloths);
     for i in 0..substeps {
         let span = i as f32 / substeps as f32..(i + 1) as f32 / substeps as f32;
         for cloth in &mut *cloths {
@@ -241,6 +238,11 @@ impl<'a> Running<'a> {
             contacts: 0,
             touched: 0,
         }
+    }
+
+    /// Whether an obstacle may be touched.
+    pub fn is_near(&self) -> bool {
+        self.substep.is_near
     }
 
     /// Moves the cloth through the part `span` of the step, its substep `i`, as if it touched nothing.

@@ -44,7 +44,7 @@ pub struct Side<'a> {
     pub first: u32,
     /// How sharp a corner or edge has to be that the other side may be caught on.
     pub sharper_than: f32,
-    /// Whether it has faces, and not edges alone.
+    /// Whether its faces are met, and not its corners and edges alone.
     pub has_faces: bool,
     /// Distance in m that each point has around it, if any has.
     pub radii: &'a [f32],
@@ -145,6 +145,23 @@ pub fn pairs_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Rea
             let is_met = theirs.edges[k] > b.sharper_than && edge.meets(&other_ways[k].union(other_ways[(k + 1) % 3]));
             if is_met && !(is_same && (p == u || p == v || q == u || q == v)) {
                 found_between(Features::EdgeEdge, [a, a, b, b], [p, q, u, v], reach, &mut found);
+            }
+        }
+    }
+}
+
+/// Shows the pairs of a point that belongs to leaf `p` of `a` and a face in leaf `q` of `b` that may touch.
+pub fn points_at_faces((a, p): (&Side, u32), (b, q): (&Side, u32), reach: &Reach, mut found: impl FnMut(Found)) {
+    for &point in a.surface.points_of_leaf(p) {
+        let way = a.way_of(point).grown(reach.distance + reach.slack);
+        if !way.meets(&b.places.of_nodes[q as usize]) {
+            continue;
+        }
+        for face in b.surface.of_leaf(q) {
+            if way.meets(&b.places.of_triangles[face]) {
+                let [u, v, w] = b.surface.triangles[face];
+                let shown = |one| found(Found { face, ..one });
+                found_between(Features::PointFace, [a, b, b, b], [point, u, v, w], reach, shown);
             }
         }
     }
