@@ -13,11 +13,12 @@ use super::{
     surface::{Places, Surface, Walk},
     tangle::Tangle,
 };
-use crate::solver::{Lanes, Scratch, SelfCollision, StepContext, lanes, step::Running};
+use crate::solver::{Lanes, SelfCollision, StepContext, step::Running};
 
 mod cloths;
 mod lead;
 mod obstacle;
+mod places;
 
 use lead::BodyWay;
 use obstacle::{Approach, AtObstacle, Fixed};
@@ -116,8 +117,8 @@ impl Touch {
     /// Looks for pairs in what is left of a step of `dt` seconds, of which the share `now` is over, if it is time to.
     fn search(&mut self, cloths: &[Running], span: Range<f32>, dt: f32) {
         self.take_places(cloths);
-        let is_known = self.is_begun && span.end <= self.searched.end;
-        if is_known && !self.has_come_off(span.start) && !self.has_body_come_off(cloths, span.start) {
+        let is_known = self.is_begun && span.end <= self.searched.end && self.tangles.is_empty();
+        if is_known && !self.has_come_off(&span) && !self.has_body_come_off(cloths, span.start) {
             return;
         }
         self.is_begun = true;
@@ -153,38 +154,6 @@ impl Touch {
             points.resize(count, Vec3A::ZERO);
         }
         self.points.inverse_mass.resize(count, 0.0);
-    }
-
-    /// Reads where all particles are, and where they were when the substep began.
-    fn take_places(&mut self, cloths: &[Running]) {
-        self.first.clear();
-        self.first.push(0);
-        for cloth in cloths {
-            let first = self.first[self.first.len() - 1];
-            self.first.push(first + cloth.topology.particle_count() as u32);
-        }
-        let count = self.particle_count() + self.fixed.len();
-        for (i, cloth) in cloths.iter().enumerate() {
-            let particles = self.particles(i);
-            let Lanes { order, position, previous, .. } = &cloth.scratch.lanes;
-            for (values, of) in [(&mut self.points.position, position), (&mut self.points.previous, previous)] {
-                values.resize(count, Vec3A::ZERO);
-                of.store(*order, &mut values[particles.clone()], cloth.scratch.instructions);
-                if cloth.offset != Vec3A::ZERO {
-                    values[particles.clone()].iter_mut().for_each(|p| *p += cloth.offset);
-                }
-            }
-        }
-    }
-
-    /// Number of all particles.
-    fn particle_count(&self) -> usize {
-        self.first[self.first.len() - 1] as usize
-    }
-
-    /// Numbers of the particles of a cloth.
-    fn particles(&self, cloth: usize) -> Range<usize> {
-        self.first[cloth] as usize..self.first[cloth + 1] as usize
     }
 
     /// Keeps where particles were when the substep began, for a search, and reads their velocities, as ways.
@@ -261,23 +230,7 @@ impl Touch {
                 true => self.solve_pairs_on_bodies(cloths, span.clone(), most_parted),
                 false => self.solve_pairs(most_parted),
             };
-            for (i, cloth) in cloths.iter_mut().enumerate() {
-                let particles = self.particles(i);
-                let Scratch { lanes: Lanes { order, position, previous, .. }, instructions, .. } = &mut *cloth.scratch;
-                let put = |places: &mut [Vec3A], lanes: &mut lanes::Points| {
-                    if cloth.offset != Vec3A::ZERO {
-                        places.iter_mut().for_each(|p| *p -= cloth.offset);
-                    }
-                    lanes.load(*order, places, *instructions);
-                    if cloth.offset != Vec3A::ZERO {
-                        places.iter_mut().for_each(|p| *p += cloth.offset);
-                    }
-                };
-                put(&mut self.points.position[particles.clone()], position);
-                if self.points.has_parted {
-                    put(&mut self.points.previous[particles], previous);
-                }
-            }
+            self.give_places(cloths, span);
         }
         touched
     }
@@ -288,15 +241,18 @@ impl Touch {
         pairs.iter_mut().map(|pair| u32::from(pair.solve(points, most_parted, None).is_some())).sum()
     }
 
-    /// Whether a particle was off its way when a substep began.
-    fn has_come_off(&self, now: f32) -> bool {
-        let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
-        (0..self.slack.len()).any(|cloth| {
-            let particles = self.particles(cloth);
-            let far = self.slack[cloth] * self.slack[cloth];
-            let ways = self.start[particles.clone()].iter().zip(&self.way[particles.clone()]);
-            let mut ways = ways.zip(&self.points.previous[particles]);
-            ways.any(|((&start, &way), place)| place.distance_squared(start + way * share) > far)
+    /// Whether a particle was off its way when the part `span` of the step began, or is now.
+    fn has_come_off(&self, span: &Range<f32>) -> bool {
+        let Points { previous, .. } = &self.points;
+        [(span.start, previous)].into_iter().any(|(now, places)| {
+            let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
+            (0..self.slack.len()).any(|cloth| {
+                let particles = self.particles(cloth);
+                let far = self.slack[cloth] * self.slack[cloth];
+                let ways = self.start[particles.clone()].iter().zip(&self.way[particles.clone()]);
+                let mut ways = ways.zip(&places[particles]);
+                ways.any(|((&start, &way), place)| place.distance_squared(start + way * share) > far)
+            })
         })
     }
 }
