@@ -75,16 +75,18 @@ impl Effort {
         Self { substeps, levels, careful_substeps: substeps, careful_levels, follows_time_step: false }
     }
 
-    /// Substeps and levels of a step of `dt` seconds.
-    pub(super) fn of_step(&self, with_care: bool, dt: f32) -> (u32, &[LevelPass]) {
+    /// Substeps and levels of a step of `dt` seconds. `crossing` is the number of substeps in which no part of the cloth goes
+    /// through more than there is between two of its layers: towards it, up to twice as many are worth while.
+    pub(super) fn of_step(&self, with_care: bool, crossing: f32, dt: f32) -> (u32, &[LevelPass]) {
         let (substeps, levels) = match with_care {
             true => (self.careful_substeps, &self.careful_levels),
             false => (self.substeps, &self.levels),
         };
         let factor = if self.follows_time_step { dt * 60.0 } else { 1.0 };
         // A step of 1/60 s isn't longer than that by a rounding.
-        let substeps = (substeps as f32 * factor - 0.01).ceil().max(1.0) as u32;
-        (substeps, levels)
+        let wanted = (substeps as f32 * factor - 0.01).ceil().max(1.0);
+        let most = if self.follows_time_step { 2.0 * wanted } else { wanted };
+        (crossing.ceil().clamp(wanted, most) as u32, levels)
     }
 
     /// The levels that go with so many substeps: the fewer there are, the farther a pull has to travel in one. Where

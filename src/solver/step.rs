@@ -144,7 +144,13 @@ impl<'a> Plan<'a> {
         let touches = ctx.self_collision != SelfCollision::Off;
         let is_mounted = !ctx.mounted.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
-        let (wanted, levels) = ctx.effort.of_step(with_care, dt);
+        let crossing = match ctx.self_collision {
+            SelfCollision::Robust => {
+                spread(particles) * dt / (2.0 * topology.self_distance(SelfCollision::Robust, ctx.self_distance))
+            }
+            SelfCollision::Particles | SelfCollision::Off => 0.0,
+        };
+        let (wanted, levels) = ctx.effort.of_step(with_care, crossing, dt);
         // Levels move what hangs on a body without its weight on the body.
         let levels = if is_mounted { &[] } else { levels };
         let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
@@ -162,6 +168,12 @@ impl<'a> Plan<'a> {
         let substeps = needed_substeps.min(most);
         Some(Self { dt, is_near, levels, substeps, needed_substeps, stiffness_scale })
     }
+}
+
+/// The highest speed among the parts of a cloth against the rest of it, m/s.
+fn spread(particles: &Particles) -> f32 {
+    let mean = particles.velocity.iter().sum::<Vec3A>() / particles.len().max(1) as f32;
+    particles.velocity.iter().map(|velocity| velocity.distance_squared(mean)).fold(0.0, f32::max).sqrt()
 }
 
 /// A cloth within its step.

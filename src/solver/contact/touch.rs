@@ -167,7 +167,8 @@ impl Touch {
             let particles = self.particles(i);
             let Lanes { order, velocity, .. } = &cloth.scratch.lanes;
             velocity.store(*order, &mut self.way[particles.clone()], cloth.scratch.instructions);
-            let masses = (0..particles.len() as u32).map(|particle| cloth.scratch.lanes.inverse_mass(order.slot(particle)));
+            let masses =
+                (0..particles.len() as u32).map(|particle| cloth.scratch.lanes.inverse_mass(order.slot(particle)));
             self.points.inverse_mass.extend(masses);
         }
     }
