@@ -8,6 +8,7 @@ use super::{
     Lattice, LevelPass, Method, Particles, Scratch, SelfCollision, StepContext, StepReport, Topology,
     constraint::{anchor, grab, weave::Last},
     contact::{self, touch::Touch},
+    effort::Care,
     explicit,
     force::wind,
     integrate::{self, Motion, SpeedLimit},
@@ -144,13 +145,12 @@ impl<'a> Plan<'a> {
         let touches = ctx.self_collision != SelfCollision::Off;
         let is_mounted = !ctx.mounted.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
-        let crossing = match ctx.self_collision {
-            SelfCollision::Robust => {
-                spread(particles) * dt / (2.0 * topology.self_distance(SelfCollision::Robust, ctx.self_distance))
-            }
-            SelfCollision::Particles | SelfCollision::Off => 0.0,
+        let care = match (ctx.self_collision, with_care) {
+            (SelfCollision::Robust, _) => Care::Most,
+            (_, true) => Care::Some,
+            (_, false) => Care::None,
         };
-        let (wanted, levels) = ctx.effort.of_step(with_care, crossing, dt);
+        let (wanted, levels) = ctx.effort.of_step(care, dt);
         // Levels move what hangs on a body without its weight on the body.
         let levels = if is_mounted { &[] } else { levels };
         let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
@@ -168,12 +168,6 @@ impl<'a> Plan<'a> {
         let substeps = needed_substeps.min(most);
         Some(Self { dt, is_near, levels, substeps, needed_substeps, stiffness_scale })
     }
-}
-
-/// The highest speed among the parts of a cloth against the rest of it, m/s.
-fn spread(particles: &Particles) -> f32 {
-    let mean = particles.velocity.iter().sum::<Vec3A>() / particles.len().max(1) as f32;
-    particles.velocity.iter().map(|velocity| velocity.distance_squared(mean)).fold(0.0, f32::max).sqrt()
 }
 
 /// A cloth within its step.
