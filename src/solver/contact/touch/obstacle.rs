@@ -68,14 +68,45 @@ pub struct AtObstacle {
     places: Places,
     leaves: Vec<(u32, u32)>,
     found: Vec<Found>,
-    /// Distance of each particle to the nearest face, m.
-    nearest: Vec<f32>,
+    /// The face that is nearest to each particle.
+    nearest: Vec<NearestFace>,
     whereabouts: Vec<Whereabouts>,
     /// Number of each of the obstacle's points among all.
     number: Vec<u32>,
     deformed: Deformed,
     /// Outlines of the solids among each cloth's obstacles, with what they were drawn for.
     outlines: Vec<Vec<(Solid, [f32; 3], Outline)>>,
+}
+
+/// The face that is nearest to a particle.
+#[derive(Clone, Copy, Debug)]
+struct NearestFace {
+    /// Distance, m.
+    length: f32,
+    /// From its nearest place to the particle, m.
+    between: Vec3A,
+    face: usize,
+}
+
+impl NearestFace {
+    const NONE: Self = Self { length: f32::INFINITY, between: Vec3A::ZERO, face: 0 };
+
+    /// Faces that are no steeper to each other than by this cosine go on from each other.
+    const GOES_ON: f32 = 0.9;
+
+    /// Whether the particle may come to touch another face before this one: it slides there, or comes from this one to that.
+    fn leaves_way_to(&self, other: &Found, target: &Target) -> bool {
+        if other.length > self.length + other.approach {
+            return false;
+        }
+        if other.face == self.face
+            || self.between.distance_squared(other.nearest.between) <= other.approach * other.approach
+        {
+            return true;
+        }
+        let [n, m] = [self.face, other.face].map(|face| target.normal(face));
+        n.dot(m) < Self::GOES_ON * (n.length_squared() * m.length_squared()).sqrt()
+    }
 }
 
 /// A mesh whose points move within its frame.
@@ -117,6 +148,12 @@ struct Target<'a> {
 }
 
 impl Target<'_> {
+    /// Normal of a face, as long as twice its area, m².
+    fn normal(&self, face: usize) -> Vec3A {
+        let [a, b, c] = self.surface.triangles[face].map(|i| self.points[i as usize]);
+        (b - a).cross(c - a)
+    }
+
     /// How sharp its corners and edges have to be that the triangles of a cloth sink in too deep at them.
     fn sharper_than(&self, cloth: &Running) -> f32 {
         if self.has_faces { 2.0 * cloth.sink() / cloth.surface().longest_edge } else { 0.0 }
@@ -177,7 +214,7 @@ impl AtObstacle {
         let reach = Reach { distance, slack, friction, rest: None };
         found.clear();
         nearest.clear();
-        nearest.resize(position.len(), f32::INFINITY);
+        nearest.resize(position.len(), NearestFace::NONE);
         if target.has_faces {
             find_at_faces(&a, &b, &reach, (walk, leaves), found, nearest);
         }
@@ -187,7 +224,7 @@ impl AtObstacle {
             whereabouts.resize(position.len(), Whereabouts::Unknown);
             for one in found.iter().filter(|one| one.is_of_face()) {
                 let particle = (one.pair.points[0] - at.first) as usize;
-                if one.length <= nearest[particle] {
+                if one.length <= nearest[particle].length {
                     whereabouts[particle] = whereabouts_of(one, &target, normals);
                 }
             }
@@ -235,7 +272,7 @@ impl AtObstacle {
             if one.is_of_face() {
                 let nearest = nearest[(pair.points[0] - at.first) as usize];
                 // Farther faces count where the particle may slide to them; out of the inside, the nearest.
-                if one.length > nearest + one.approach || has_inside && one.length > nearest {
+                if !nearest.leaves_way_to(one, &target) || has_inside && one.length > nearest.length {
                     continue;
                 }
                 if has_inside {
@@ -254,7 +291,7 @@ impl AtObstacle {
         // Deep inside, nothing was near.
         for particle in (0..position.len() as u32).filter(|&particle| is_inside(particle)) {
             let place = position[particle as usize];
-            if nearest[particle as usize] < f32::INFINITY || cloth.is_fixed(particle) {
+            if nearest[particle as usize].length < f32::INFINITY || cloth.is_fixed(particle) {
                 continue;
             }
             let near = inside::nearest(place, target.surface, target.places, target.points);
@@ -344,14 +381,16 @@ fn find_at_faces(
     reach: &Reach,
     (walk, leaves): (&mut Walk, &mut Vec<(u32, u32)>),
     found: &mut Vec<Found>,
-    nearest: &mut [f32],
+    nearest: &mut [NearestFace],
 ) {
     leaves.clear();
     walk.between((a.surface, a.places), (b.surface, b.places), |p, q| leaves.push((p, q)));
     for &(p, q) in &*leaves {
         search::points_at_faces((a, p), (b, q), reach, |one| {
             let nearest = &mut nearest[(one.pair.points[0] - a.first) as usize];
-            *nearest = nearest.min(one.length);
+            if one.length < nearest.length {
+                *nearest = NearestFace { length: one.length, between: one.nearest.between, face: one.face };
+            }
             found.push(one);
         });
     }
@@ -390,15 +429,13 @@ fn depth_of(found: &Found, solid: &Solid, position: &[Vec3A], first: u32) -> f32
 
 /// Whether a particle is behind the plane of a face.
 fn is_behind(found: &Found, target: &Target) -> bool {
-    let [a, b, c] = target.surface.triangles[found.face].map(|i| target.points[i as usize]);
-    found.nearest.between.dot((b - a).cross(c - a)) < 0.0
+    found.nearest.between.dot(target.normal(found.face)) < 0.0
 }
 
 /// On which side of its nearest face a particle is, by the normal of the closest place.
 fn whereabouts_of(found: &Found, target: &Target, normals: &PseudoNormals) -> Whereabouts {
     let triangle = target.surface.triangles[found.face];
-    let [a, b, c] = triangle.map(|i| target.points[i as usize]);
     let weights = [1, 2, 3].map(|i| -found.nearest.weights[i]);
-    let normal = normals.at(triangle, (b - a).cross(c - a), weights);
+    let normal = normals.at(triangle, target.normal(found.face), weights);
     if found.nearest.between.dot(normal) < 0.0 { Whereabouts::Inside } else { Whereabouts::Outside }
 }
