@@ -3,7 +3,7 @@
 use std::io;
 
 use bevy::math::Vec3;
-use bevy_drape::solver::{Elasticity, Material, Method, SelfCollision, SpringConstants, SpringKind};
+use bevy_drape::solver::SelfCollision;
 use clap::ValueEnum;
 
 use super::scene::{Scene, Settings, bullet, drape, fold, layers, needle, ribbon, storm, twist};
@@ -44,7 +44,7 @@ impl Experiment {
     }
 
     pub fn scene(self, n: u32) -> io::Result<Scene> {
-        let settings = |self_collision| settings(n, self_collision);
+        let settings = |self_collision| Settings::standard(n, 300, self_collision);
         let (alone, robust) = (settings(SelfCollision::Off), settings(SelfCollision::Robust));
         match self {
             Self::Drape => {
@@ -70,24 +70,5 @@ impl Experiment {
             Self::Fold => (Vec3::new(0.7, 0.8, 1.5), Vec3::new(0.0, 0.15, 0.0)),
             Self::Drape | Self::Layers | Self::Needle => (Vec3::new(0.6, 1.0, 1.6), Vec3::new(0.0, 0.25, 0.0)),
         }
-    }
-}
-
-/// Those that the lab has by default.
-fn settings(n: u32, self_collision: SelfCollision) -> Settings {
-    let stiffness = [5000.0, 500.0, 20.0];
-    let spring = |kind: SpringKind| SpringConstants { stiffness: stiffness[kind.index()], damping: 0.0 };
-    let springs = Elasticity::Springs(SpringKind::ALL.map(spring));
-    Settings {
-        n,
-        frames: 300,
-        method: Method::Strands,
-        substeps: None,
-        max_strain: 0.01,
-        levels: None,
-        material: Material { damping: 1.0, friction: 0.5, ..Material::bare(0.2, springs) },
-        tether_slack: 0.002,
-        self_collision,
-        self_distance: 0.004,
     }
 }
