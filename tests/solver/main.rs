@@ -8,6 +8,7 @@ mod boundaries;
 mod contact;
 mod convergence;
 mod determinism;
+mod experiments;
 mod grabs;
 mod grain;
 mod instructions;
@@ -18,6 +19,11 @@ mod meshes;
 mod mounts;
 mod rates;
 mod robustness;
+#[allow(dead_code, unused_imports, reason = "shared with the lab")]
+#[path = "../../examples/lab/scene/mod.rs"]
+mod scene;
+mod self_collision;
+mod sharp;
 mod sheets;
 mod speed_limit;
 mod springs;
