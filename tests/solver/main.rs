@@ -7,6 +7,7 @@ mod bodies;
 mod boundaries;
 mod contact;
 mod convergence;
+mod crowds;
 mod determinism;
 mod experiments;
 mod grabs;
