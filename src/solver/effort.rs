@@ -9,12 +9,23 @@ pub struct Effort {
     pub substeps: u32,
     /// Iterations of the coarse levels. Without tethers, there are none.
     pub levels: Vec<LevelPass>,
-    /// Substeps where more is at stake: something is near that the cloth may touch, a hand holds it, or no tethers do.
+    /// Substeps where more is at stake: something is near that the cloth may touch, a hand holds it, or no tethers do. Where
+    /// its triangles and edges meet those of cloth, it takes half as many more, and 16 at least, unless they are fixed.
     pub careful_substeps: u32,
     /// Levels of those.
     pub careful_levels: Vec<LevelPass>,
     /// Whether the substeps are those of a step of 1/60 s, and a longer one has more of them.
     pub follows_time_step: bool,
+}
+
+/// How much is at stake in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Care {
+    None,
+    /// Something is near that the cloth may touch, a hand holds it, or no tethers do.
+    Some,
+    /// Its triangles and edges may meet those of cloth: what passes through is hard to bring back.
+    Most,
 }
 
 impl Effort {
@@ -23,6 +34,11 @@ impl Effort {
 
     /// The same for each particle along a side.
     const LEAST_OF_SIDE: f32 = 1.0 / 6.0;
+
+    /// With fewer, a pile lets go of its order under what falls on it. As many in all steps: where they change, the load that
+    /// layers bear gives them a kick.
+    const LEAST_WITH_MOST_CARE: f32 = 16.0;
+    const MORE_WITH_MOST_CARE: f32 = 1.5;
 
     /// What a cloth of 64 x 64 particles, 1 m wide and hung by two corners, is stretched while it swings in one substep
     /// of 1/60 s, no unit. It grows with this power of the particles along a side; without rows and columns, on threads
@@ -76,15 +92,19 @@ impl Effort {
     }
 
     /// Substeps and levels of a step of `dt` seconds.
-    pub(super) fn of_step(&self, with_care: bool, dt: f32) -> (u32, &[LevelPass]) {
-        let (substeps, levels) = match with_care {
-            true => (self.careful_substeps, &self.careful_levels),
-            false => (self.substeps, &self.levels),
+    pub(super) fn of_step(&self, care: Care, dt: f32) -> (u32, &[LevelPass]) {
+        let (substeps, levels) = match care {
+            Care::None => (self.substeps as f32, &self.levels),
+            Care::Some => (self.careful_substeps as f32, &self.careful_levels),
+            Care::Most if self.follows_time_step => {
+                let substeps = Self::MORE_WITH_MOST_CARE * self.careful_substeps as f32;
+                (substeps.max(Self::LEAST_WITH_MOST_CARE), &self.careful_levels)
+            }
+            Care::Most => (self.careful_substeps as f32, &self.careful_levels),
         };
         let factor = if self.follows_time_step { dt * 60.0 } else { 1.0 };
         // A step of 1/60 s isn't longer than that by a rounding.
-        let substeps = (substeps as f32 * factor - 0.01).ceil().max(1.0) as u32;
-        (substeps, levels)
+        ((substeps * factor - 0.01).ceil().max(1.0) as u32, levels)
     }
 
     /// The levels that go with so many substeps: the fewer there are, the farther a pull has to travel in one. Where

@@ -8,6 +8,7 @@ use super::{
     Lattice, LevelPass, Method, Particles, Scratch, SelfCollision, StepContext, StepReport, Topology,
     constraint::{anchor, grab, weave::Last},
     contact::{self, touch::Touch},
+    effort::Care,
     explicit,
     force::wind,
     integrate::{self, Motion, SpeedLimit},
@@ -99,10 +100,7 @@ pub fn step_together(members: &mut [Member]) {
 
 /// The substeps of cloths that may touch each other.
 fn run(cloths: &mut [Running], substeps: u32, touch: &mut Touch) {
-    let may_touch = cloths.iter().any(|cloth| cloth.substep.touches);
-    if may_touch {
-        touch.begin();
-    }
+    let may_touch = touch.begin(cloths);
     for i in 0..substeps {
         let span = i as f32 / substeps as f32..(i + 1) as f32 / substeps as f32;
         for cloth in &mut *cloths {
@@ -147,7 +145,12 @@ impl<'a> Plan<'a> {
         let touches = ctx.self_collision != SelfCollision::Off;
         let is_mounted = !ctx.mounted.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
-        let (wanted, levels) = ctx.effort.of_step(with_care, dt);
+        let care = match (ctx.self_collision, with_care) {
+            (SelfCollision::Robust, _) => Care::Most,
+            (_, true) => Care::Some,
+            (_, false) => Care::None,
+        };
+        let (wanted, levels) = ctx.effort.of_step(care, dt);
         // Levels move what hangs on a body without its weight on the body.
         let levels = if is_mounted { &[] } else { levels };
         let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
@@ -241,6 +244,11 @@ impl<'a> Running<'a> {
             contacts: 0,
             touched: 0,
         }
+    }
+
+    /// Whether an obstacle may be touched.
+    pub fn is_near(&self) -> bool {
+        self.substep.is_near
     }
 
     /// Moves the cloth through the part `span` of the step, its substep `i`, as if it touched nothing.

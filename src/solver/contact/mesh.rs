@@ -7,7 +7,7 @@ use bevy::{
     platform::collections::HashMap,
 };
 
-use super::surface::{Bounds, Places, Surface, edges_of};
+use super::surface::{Bounds, Owned, Places, Surface, edges_of};
 
 /// Triangles that cloth can't pass, prepared for contact. Built once and shared.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,17 +109,15 @@ fn sharpen(surface: &mut Surface, points: &[Vec3A], is_closed: bool) {
         let falls_off = beyond.is_some_and(|i| (at(i) - at(a)).dot(normals[one]) < 0.0);
         if falls_off || !is_closed { sine } else { 0.0 }
     };
-    let sharp: Vec<_> = surface
+    let sharp: Vec<Owned> = surface
         .triangles
         .iter()
-        .map(|&triangle| (triangle.map(|i| sharp_corner(i as usize)), edges_of(triangle).map(sharp_edge)))
+        .map(|&triangle| Owned {
+            corners: triangle.map(|i| sharp_corner(i as usize)),
+            edges: edges_of(triangle).map(sharp_edge),
+        })
         .collect();
-    for (owned, (corners, edges)) in surface.owned.iter_mut().zip(sharp) {
-        for i in 0..3 {
-            owned.corners[i] *= corners[i];
-            owned.edges[i] *= edges[i];
-        }
-    }
+    surface.blunt(&sharp);
 }
 
 /// Normals of points and edges for the question of which side of a closed mesh a place is on: that of the closest

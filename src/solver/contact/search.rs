@@ -44,17 +44,27 @@ pub struct Side<'a> {
     pub first: u32,
     /// How sharp a corner or edge has to be that the other side may be caught on.
     pub sharper_than: f32,
-    /// Whether it has faces, and not edges alone.
+    /// Whether its faces are met, and not its corners and edges alone.
     pub has_faces: bool,
     /// Distance in m that each point has around it, if any has.
     pub radii: &'a [f32],
 }
 
 impl Side<'_> {
+    #[inline]
+    fn place(&self, point: u32) -> Vec3A {
+        self.ways.position[point as usize]
+    }
+
+    #[inline]
+    fn way(&self, point: u32) -> Vec3A {
+        self.ways.way(point as usize)
+    }
+
     /// Box around the way of a point, as thick as it is.
     #[inline]
     fn way_of(&self, point: u32) -> Bounds {
-        let (start, way) = (self.ways.position[point as usize], self.ways.way(point as usize));
+        let (start, way) = (self.place(point), self.way(point));
         Bounds { low: start.min(start + way), high: start.max(start + way) }.grown(self.radius(point))
     }
 
@@ -150,6 +160,23 @@ pub fn pairs_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Rea
     }
 }
 
+/// Shows the pairs of a point that belongs to leaf `p` of `a` and a face in leaf `q` of `b` that may touch.
+pub fn points_at_faces((a, p): (&Side, u32), (b, q): (&Side, u32), reach: &Reach, mut found: impl FnMut(Found)) {
+    for &point in a.surface.points_of_leaf(p) {
+        let way = a.way_of(point).grown(reach.distance + reach.slack);
+        if !way.meets(&b.places.of_nodes[q as usize]) {
+            continue;
+        }
+        for face in b.surface.of_leaf(q) {
+            if way.meets(&b.places.of_triangles[face]) {
+                let [u, v, w] = b.surface.triangles[face];
+                let shown = |one| found(Found { face, ..one });
+                found_between(Features::PointFace, [a, b, b, b], [point, u, v, w], reach, shown);
+            }
+        }
+    }
+}
+
 /// Shows the pairs of points of leaf `p` of `a` and leaf `q` of `b` that may touch as balls.
 pub fn balls_between((a, p): (&Side, u32), (b, q): (&Side, u32), reach: &Reach, mut found: impl FnMut(Found)) {
     let is_one_leaf = reach.rest.is_some() && p == q;
@@ -177,12 +204,26 @@ fn is_open(side: &Side, triangle: [u32; 3], other: [u32; 3]) -> bool {
     n.dot(m) > OPEN * (n.length_squared() * m.length_squared()).sqrt()
 }
 
+/// `distance` (m), or what features of one cloth may keep of it that are nearer to each other at rest.
+#[inline]
+fn distance_at_rest(features: Features, points: [u32; 4], rest: &[Vec3], distance: f32, side: &Side) -> f32 {
+    let [a, b, c, d] = points;
+    let [a, b, c, d] = [rest[a as usize], rest[b as usize], rest[c as usize], rest[d as usize]];
+    // Mostly they are far apart in the cloth: no two places of theirs are nearer than that.
+    let far = distance / AT_REST + 2.0 * side.surface.longest_edge;
+    if a.distance_squared(c) > far * far {
+        return distance;
+    }
+    let nearest = features.nearest([a, b, c, d].map(Vec3A::from));
+    distance.min(AT_REST * nearest.between.length())
+}
+
 /// Shows a pair of features if it may touch.
 #[inline]
 fn found_between(features: Features, sides: [&Side; 4], points: [u32; 4], reach: &Reach, found: impl FnOnce(Found)) {
-    let of = |i: usize| points[i] as usize;
-    let places: [Vec3A; 4] = core::array::from_fn(|i| sides[i].ways.position[of(i)]);
-    let [w0, w1, w2, w3] = core::array::from_fn(|i| sides[i].ways.way(of(i)));
+    let ([s0, s1, s2, s3], [p0, p1, p2, p3]) = (sides, points);
+    let places = [s0.place(p0), s1.place(p1), s2.place(p2), s3.place(p3)];
+    let [w0, w1, w2, w3] = [s0.way(p0), s1.way(p1), s2.way(p2), s3.way(p3)];
     let (distance, taper) = match features {
         Features::PointFace | Features::PointPoint => (reach.distance + sides[0].radius(points[0]), 0.0),
         Features::EdgeEdge => {
@@ -202,16 +243,10 @@ fn found_between(features: Features, sides: [&Side; 4], points: [u32; 4], reach:
     if nearest.between.length_squared() > farthest * farthest {
         return;
     }
-    let distance = match reach.rest {
-        Some(rest) => {
-            let at_rest = features.nearest(points.map(|i| Vec3A::from(rest[i as usize])));
-            distance.min(AT_REST * at_rest.between.length())
-        }
-        None => distance,
-    };
+    let distance = reach.rest.map_or(distance, |rest| distance_at_rest(features, points, rest, distance, sides[0]));
     let (direction, length) = nearest.between.normalize_and_length();
     let normal = if length > 0.0 { direction } else { Vec3A::Y };
-    let points = core::array::from_fn(|i| sides[i].first + points[i]);
+    let points = [s0.first + p0, s1.first + p1, s2.first + p2, s3.first + p3];
     let pair =
         Pair { features, points, distance, taper, friction: reach.friction, is_of_solid: false, gap: length, normal };
     found(Found { pair, is_first_of_a: true, face: 0, length, nearest, approach });

@@ -39,6 +39,8 @@ pub struct Surface {
     pub mean_edge: f32,
     /// Length of the longest edge at rest, m.
     pub longest_edge: f32,
+    /// How sharp the sharpest feature within each node is.
+    sharpest: Vec<f32>,
     /// Points that belong to the triangles of each leaf, leaf after leaf; and where those of each end.
     points: Vec<u32>,
     points_end: Vec<u32>,
@@ -72,7 +74,32 @@ impl Surface {
         let (sum, longest, count) = lengths()
             .fold((0.0, 0.0_f32, 0), |(sum, longest, count), length| (sum + length, longest.max(length), count + 1));
         (surface.mean_edge, surface.longest_edge) = (sum / count.max(1) as f32, longest);
+        surface.note_sharpest();
         surface
+    }
+
+    /// Makes what belongs to each triangle as sharp as `sharpness` says.
+    pub fn blunt(&mut self, sharpness: &[Owned]) {
+        for (owned, sharp) in self.owned.iter_mut().zip(sharpness) {
+            for i in 0..3 {
+                owned.corners[i] *= sharp.corners[i];
+                owned.edges[i] *= sharp.edges[i];
+            }
+        }
+        self.note_sharpest();
+    }
+
+    fn note_sharpest(&mut self) {
+        self.sharpest.clear();
+        self.sharpest.resize(self.node_count(), 0.0);
+        for leaf in self.leaves..2 * self.leaves {
+            let owned = self.owned[self.of_leaf(leaf as u32)].iter();
+            let sharpness = owned.flat_map(|owned| owned.corners.into_iter().chain(owned.edges));
+            self.sharpest[leaf] = sharpness.fold(0.0, f32::max);
+        }
+        for node in (1..self.leaves).rev() {
+            self.sharpest[node] = self.sharpest[2 * node].max(self.sharpest[2 * node + 1]);
+        }
     }
 
     /// Finds which leaves share a corner, and which points belong to each.
@@ -319,7 +346,20 @@ impl Walk {
     ) {
         self.left.clear();
         self.left.push((1, 1));
-        self.down((a, at), (b, bt), &mut visit);
+        self.down((a, at), (b, bt), None, &mut visit);
+    }
+
+    /// Visits those of them that the other surface has something sharper than `sharpness` in.
+    pub fn between_sharp(
+        &mut self,
+        (a, at): (&Surface, &Places),
+        (b, bt): (&Surface, &Places),
+        sharpness: f32,
+        mut visit: impl FnMut(u32, u32),
+    ) {
+        self.left.clear();
+        self.left.push((1, 1));
+        self.down((a, at), (b, bt), Some(sharpness), &mut visit);
     }
 
     /// Visits the pairs of leaves of one surface that may touch each other, and leaves that may touch themselves as a pair
@@ -344,14 +384,23 @@ impl Walk {
                     visit(p, q);
                 }
             };
-            self.down((surface, places), (surface, places), &mut visit_folded);
+            self.down((surface, places), (surface, places), None, &mut visit_folded);
             self.folded.extend([other, first]);
         }
     }
 
     /// Visits the pairs of leaves below what is left whose boxes meet.
-    fn down(&mut self, (a, at): (&Surface, &Places), (b, bt): (&Surface, &Places), visit: &mut impl FnMut(u32, u32)) {
+    fn down(
+        &mut self,
+        (a, at): (&Surface, &Places),
+        (b, bt): (&Surface, &Places),
+        sharper_than: Option<f32>,
+        visit: &mut impl FnMut(u32, u32),
+    ) {
         while let Some((p, q)) = self.left.pop() {
+            if sharper_than.is_some_and(|least| b.sharpest[q as usize] <= least) {
+                continue;
+            }
             if !at.of_nodes[p as usize].meets(&bt.of_nodes[q as usize]) {
                 continue;
             }

@@ -13,11 +13,12 @@ use super::{
     surface::{Places, Surface, Walk},
     tangle::Tangle,
 };
-use crate::solver::{Lanes, Scratch, SelfCollision, StepContext, lanes, step::Running};
+use crate::solver::{Lanes, SelfCollision, StepContext, step::Running};
 
 mod cloths;
 mod lead;
 mod obstacle;
+mod places;
 
 use lead::BodyWay;
 use obstacle::{Approach, AtObstacle, Fixed};
@@ -29,6 +30,10 @@ const SLACK: f32 = 0.2;
 /// fewer layers of a pile are near each other, and the sooner there is another search.
 const SLACK_AT_REST: f32 = 0.0005;
 const SLACK_OF_WAY: f32 = 0.25;
+
+/// Share of the fall that is taken to happen: nobody knows what is held up, and so neither that comes off its way, nor what
+/// falls.
+const FALL: f32 = 0.5;
 
 /// How deep the inside of a triangle may sink into what isn't sharp: this much at least, m, and this share of the distance
 /// that particles keep. What is seen of the cloth stays outside.
@@ -92,22 +97,31 @@ pub struct Touch {
     fixed: Vec<Fixed>,
     body_ways: Vec<BodyWay>,
     at_obstacle: AtObstacle,
-    is_off: bool,
+    /// Whether there has been a search in this step.
+    is_begun: bool,
 }
 
 impl Touch {
-    /// Begins a step: nothing is known yet.
-    pub fn begin(&mut self) {
-        self.is_off = true;
+    /// Begins a step: nothing is known yet. Returns whether there may be anything to do.
+    pub fn begin(&mut self, cloths: &[Running]) -> bool {
+        self.is_begun = false;
         self.pairs.clear();
         self.tangles.clear();
+        let mut is_needed = cloths.iter().any(Running::collides);
+        for (number, cloth) in cloths.iter().enumerate() {
+            is_needed |= cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
+        }
+        is_needed
     }
 
     /// Looks for pairs in what is left of a step of `dt` seconds, of which the share `now` is over, if it is time to.
-    fn search(&mut self, cloths: &mut [Running], span: Range<f32>, dt: f32) {
-        if !self.is_off && span.end <= self.searched.end {
+    fn search(&mut self, cloths: &[Running], span: Range<f32>, dt: f32) {
+        self.take_places(cloths);
+        let is_known = self.is_begun && span.end <= self.searched.end && self.tangles.is_empty();
+        if is_known && !self.has_come_off(&span) && !self.has_body_come_off(cloths, span.start) {
             return;
         }
+        self.is_begun = true;
         self.take_velocities(cloths);
         let now = span.start;
         self.searched = now..self.horizon(cloths, span, dt);
@@ -123,7 +137,10 @@ impl Touch {
         }
         for (number, cloth) in cloths.iter().enumerate() {
             self.note_bodies(number, cloth, dt);
-            let particles = self.first[number] as usize..self.first[number + 1] as usize;
+            if !cloth.is_near() {
+                continue;
+            }
+            let particles = self.particles(number);
             let ways = Ways { position: &self.start[particles.clone()], way: &self.way[particles] };
             let (first, total) = (self.first[number], self.start.len());
             let (slack, span) = (self.slack[number], self.searched.clone());
@@ -139,26 +156,21 @@ impl Touch {
         self.points.inverse_mass.resize(count, 0.0);
     }
 
-    /// Reads where all particles are when the substep begins, and their velocities, as ways.
+    /// Keeps where particles were when the substep began, for a search, and reads their velocities, as ways.
     fn take_velocities(&mut self, cloths: &[Running]) {
-        self.first.clear();
+        let count = self.particle_count();
         self.start.clear();
-        self.way.clear();
+        self.start.extend_from_slice(&self.points.previous[..count]);
+        self.way.resize(count, Vec3A::ZERO);
         self.points.inverse_mass.clear();
-        for cloth in cloths {
-            let first = self.start.len();
-            self.first.push(first as u32);
-            let count = cloth.topology.particle_count();
-            self.start.resize(first + count, Vec3A::ZERO);
-            self.way.resize(first + count, Vec3A::ZERO);
-            let Lanes { order, previous, velocity, .. } = &cloth.scratch.lanes;
-            previous.store(*order, &mut self.start[first..], cloth.scratch.instructions);
-            velocity.store(*order, &mut self.way[first..], cloth.scratch.instructions);
-            self.start[first..].iter_mut().for_each(|place| *place += cloth.offset);
-            let masses = (0..count as u32).map(|particle| cloth.scratch.lanes.inverse_mass(order.slot(particle)));
+        for (i, cloth) in cloths.iter().enumerate() {
+            let particles = self.particles(i);
+            let Lanes { order, velocity, .. } = &cloth.scratch.lanes;
+            velocity.store(*order, &mut self.way[particles.clone()], cloth.scratch.instructions);
+            let masses =
+                (0..particles.len() as u32).map(|particle| cloth.scratch.lanes.inverse_mass(order.slot(particle)));
             self.points.inverse_mass.extend(masses);
         }
-        self.first.push(self.start.len() as u32);
     }
 
     /// The moment of the step (0..=1) up to which a search is worth while: the farther things move past each other, the
@@ -178,9 +190,13 @@ impl Touch {
         }
         let share = edge / (fastest * dt).max(f32::MIN_POSITIVE);
         let end = (span.start + share).clamp(span.end, 1.0);
-        let needed = SLACK_AT_REST + SLACK_OF_WAY * fastest * (end - span.start) * dt;
+        let left = (end - span.start) * dt;
+        let needed = SLACK_AT_REST + SLACK_OF_WAY * fastest * left;
         self.slack.clear();
-        self.slack.extend(cloths.iter().map(|cloth| needed.min(SLACK * cloth.surface().mean_edge)));
+        self.slack.extend(cloths.iter().map(|cloth| {
+            let fall = 0.5 * cloth.ctx.gravity.length() * left * left;
+            (needed + FALL * fall).min(SLACK * cloth.surface().mean_edge)
+        }));
         end
     }
 
@@ -189,8 +205,8 @@ impl Touch {
         let share = self.searched.end - self.searched.start;
         let left = share * dt;
         for (number, cloth) in cloths.iter().enumerate() {
-            let particles = self.first[number] as usize..self.first[number + 1] as usize;
-            let fall = cloth.ctx.gravity * (0.5 * left * left);
+            let particles = self.particles(number);
+            let fall = cloth.ctx.gravity * (0.5 * FALL * left * left);
             let way = &mut self.way[particles];
             way.iter_mut().for_each(|way| *way = *way * left + fall);
             for anchor in cloth.ctx.anchors {
@@ -203,19 +219,6 @@ impl Touch {
     /// pairs that touched.
     pub fn solve(&mut self, cloths: &mut [Running], span: Range<f32>, h: f32, dt: f32) -> u32 {
         self.search(cloths, span.clone(), dt);
-        let count = self.start.len();
-        self.points.position.resize(count + self.fixed.len(), Vec3A::ZERO);
-        self.points.previous.resize(count + self.fixed.len(), Vec3A::ZERO);
-        for (i, cloth) in cloths.iter().enumerate() {
-            let particles = self.first[i] as usize..self.first[i + 1] as usize;
-            let Lanes { order, position, previous, .. } = &cloth.scratch.lanes;
-            for (values, of) in [(&mut self.points.position, position), (&mut self.points.previous, previous)] {
-                of.store(*order, &mut values[particles.clone()], cloth.scratch.instructions);
-                if cloth.offset != Vec3A::ZERO {
-                    values[particles.clone()].iter_mut().for_each(|p| *p += cloth.offset);
-                }
-            }
-        }
         let mut touched = 0;
         if !self.pairs.is_empty() || !self.tangles.is_empty() {
             self.lead_fixed(cloths, span.clone());
@@ -228,25 +231,8 @@ impl Touch {
                 true => self.solve_pairs_on_bodies(cloths, span.clone(), most_parted),
                 false => self.solve_pairs(most_parted),
             };
-            for (i, cloth) in cloths.iter_mut().enumerate() {
-                let particles = self.first[i] as usize..self.first[i + 1] as usize;
-                let Scratch { lanes: Lanes { order, position, previous, .. }, instructions, .. } = &mut *cloth.scratch;
-                let put = |places: &mut [Vec3A], lanes: &mut lanes::Points| {
-                    if cloth.offset != Vec3A::ZERO {
-                        places.iter_mut().for_each(|p| *p -= cloth.offset);
-                    }
-                    lanes.load(*order, places, *instructions);
-                    if cloth.offset != Vec3A::ZERO {
-                        places.iter_mut().for_each(|p| *p += cloth.offset);
-                    }
-                };
-                put(&mut self.points.position[particles.clone()], position);
-                if self.points.has_parted {
-                    put(&mut self.points.previous[particles], previous);
-                }
-            }
+            self.give_places(cloths, span);
         }
-        self.is_off = self.has_come_off(span.end) || self.has_body_come_off(cloths, span.end);
         touched
     }
 
@@ -256,15 +242,18 @@ impl Touch {
         pairs.iter_mut().map(|pair| u32::from(pair.solve(points, most_parted, None).is_some())).sum()
     }
 
-    /// Whether a particle has come off its way.
-    fn has_come_off(&self, now: f32) -> bool {
-        let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
-        (0..self.slack.len()).any(|cloth| {
-            let particles = self.first[cloth] as usize..self.first[cloth + 1] as usize;
-            let far = self.slack[cloth] * self.slack[cloth];
-            let ways = self.start[particles.clone()].iter().zip(&self.way[particles.clone()]);
-            let mut ways = ways.zip(&self.points.position[particles]);
-            ways.any(|((&start, &way), place)| place.distance_squared(start + way * share) > far)
+    /// Whether a particle was off its way when the part `span` of the step began, or is now.
+    fn has_come_off(&self, span: &Range<f32>) -> bool {
+        let Points { previous, .. } = &self.points;
+        [(span.start, previous)].into_iter().any(|(now, places)| {
+            let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
+            (0..self.slack.len()).any(|cloth| {
+                let particles = self.particles(cloth);
+                let far = self.slack[cloth] * self.slack[cloth];
+                let ways = self.start[particles.clone()].iter().zip(&self.way[particles.clone()]);
+                let mut ways = ways.zip(&places[particles]);
+                ways.any(|((&start, &way), place)| place.distance_squared(start + way * share) > far)
+            })
         })
     }
 }

@@ -54,14 +54,14 @@ impl Touch {
         }
     }
 
-    /// Whether a body has come off its way.
+    /// Whether a body was off its way when a substep began.
     pub(super) fn has_body_come_off(&self, cloths: &[Running], now: f32) -> bool {
         let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
         self.body_ways.iter().any(|BodyWay { cloth, obstacle, poses: [from, to], far }| {
             let Some(body) = cloths[*cloth].scratch.bodies.get(*obstacle) else { return false };
             let translation = from.translation.lerp(to.translation, share);
             let expected = Isometry3d { translation, rotation: from.rotation.lerp(to.rotation, share) };
-            sweep::way_between(&expected, &body.end, *far) > self.slack[*cloth]
+            sweep::way_between(&expected, &body.start, *far) > self.slack[*cloth]
         })
     }
 

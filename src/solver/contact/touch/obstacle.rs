@@ -116,7 +116,32 @@ struct Target<'a> {
     way: Option<&'a [Vec3A]>,
 }
 
+impl Target<'_> {
+    /// How sharp its corners and edges have to be that the triangles of a cloth sink in too deep at them.
+    fn sharper_than(&self, cloth: &Running) -> f32 {
+        if self.has_faces { 2.0 * cloth.sink() / cloth.surface().longest_edge } else { 0.0 }
+    }
+}
+
 impl AtObstacle {
+    /// Whether triangles and edges of a cloth, number `number` of those that are stepped together, may meet anything that its
+    /// particles don't.
+    pub fn is_needed(&mut self, number: usize, cloth: &Running) -> bool {
+        let mut is_needed = false;
+        for (i, obstacle) in cloth.ctx.obstacles.iter().enumerate() {
+            is_needed |= match &obstacle.shape {
+                Shape::Solid(solid) => {
+                    let distance = distance_to(obstacle, cloth);
+                    let needs = [cloth.surface().longest_edge, distance, cloth.sink()];
+                    draw(&mut self.outlines, number, i, solid, needs);
+                    !self.outlines[number][i].2.points.is_empty()
+                }
+                Shape::Mesh(_) => true,
+            };
+        }
+        is_needed
+    }
+
     /// The outline that a point is of.
     pub fn outline(&self, fixed: &Fixed) -> &Outline {
         &self.outlines[fixed.cloth as usize][fixed.obstacle as usize].2
@@ -126,10 +151,7 @@ impl AtObstacle {
     pub fn search(&mut self, at: &Approach, i: usize, walk: &mut Walk, fixed: &mut Vec<Fixed>, pairs: &mut Vec<Pair>) {
         let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
         let surface = cloth.surface();
-        let distance = cloth.ctx.contact_distance().max(LEAST) + obstacle.rounding;
-        if let Shape::Solid(solid) = &obstacle.shape {
-            draw(&mut self.outlines, at.number, i, solid, [surface.longest_edge, distance, cloth.sink()]);
-        }
+        let distance = distance_to(obstacle, cloth);
         let Self { position, way, places, leaves, found, nearest, whereabouts, number, deformed, outlines } = self;
         let Some(target) = target(obstacle, &at.span, deformed, || &outlines[at.number][i].2) else { return };
         // In the obstacle's own frame it stays, and the cloth's way is that past it.
@@ -141,22 +163,25 @@ impl AtObstacle {
         }
         let ways = Ways { position, way };
         places.follow(surface, |triangle| ways.bounds(triangle).grown(reached), None::<fn(_) -> _>);
-        leaves.clear();
-        walk.between((surface, places), (target.surface, target.places), |p, q| leaves.push((p, q)));
         let a = Side { surface, places, ways, first: at.first, sharper_than: 0.0, has_faces: true, radii: &[] };
-        let still = Ways { position: target.points, way: target.way.unwrap_or(&[]) };
         let b = Side {
             surface: target.surface,
             places: target.places,
-            ways: still,
+            ways: Ways { position: target.points, way: target.way.unwrap_or(&[]) },
             first: 0,
-            sharper_than: if target.has_faces { 2.0 * cloth.sink() / surface.longest_edge } else { 0.0 },
-            has_faces: target.has_faces,
+            sharper_than: target.sharper_than(cloth),
+            has_faces: false,
             radii: target.radii,
         };
         let friction = cloth.ctx.material.friction * obstacle.friction;
         let reach = Reach { distance, slack, friction, rest: None };
-        find(&a, &b, &reach, leaves, found, nearest);
+        found.clear();
+        nearest.clear();
+        nearest.resize(position.len(), f32::INFINITY);
+        if target.has_faces {
+            find_at_faces(&a, &b, &reach, (walk, leaves), found, nearest);
+        }
+        find_at_edges(&a, &b, &reach, (walk, leaves), found);
         whereabouts.clear();
         if let Some(normals) = target.normals {
             whereabouts.resize(position.len(), Whereabouts::Unknown);
@@ -248,6 +273,11 @@ impl AtObstacle {
     }
 }
 
+/// Distance that a cloth keeps from an obstacle, m.
+fn distance_to(obstacle: &Obstacle, cloth: &Running) -> f32 {
+    cloth.ctx.contact_distance().max(LEAST) + obstacle.rounding
+}
+
 /// Draws the outline of obstacle `i` of a cloth, where it isn't drawn yet for what the cloth `needs`.
 fn draw(outlines: &mut Vec<Vec<(Solid, [f32; 3], Outline)>>, cloth: usize, i: usize, solid: &Solid, needs: [f32; 3]) {
     if outlines.len() <= cloth {
@@ -307,24 +337,42 @@ fn to_frame(at: &Approach, poses: [Isometry3d; 2], position: &mut Vec<Vec3A>, wa
     bounds
 }
 
-/// Finds pairs in leaves that are near, and how far each particle is from the nearest face.
-fn find(a: &Side, b: &Side, reach: &Reach, leaves: &[(u32, u32)], found: &mut Vec<Found>, nearest: &mut Vec<f32>) {
-    found.clear();
-    nearest.clear();
-    nearest.resize(a.ways.position.len(), f32::INFINITY);
-    for &(p, q) in leaves {
+/// Finds pairs of particles and faces that are near, and how far each particle is from the nearest one.
+fn find_at_faces(
+    a: &Side,
+    b: &Side,
+    reach: &Reach,
+    (walk, leaves): (&mut Walk, &mut Vec<(u32, u32)>),
+    found: &mut Vec<Found>,
+    nearest: &mut [f32],
+) {
+    leaves.clear();
+    walk.between((a.surface, a.places), (b.surface, b.places), |p, q| leaves.push((p, q)));
+    for &(p, q) in &*leaves {
+        search::points_at_faces((a, p), (b, q), reach, |one| {
+            let nearest = &mut nearest[(one.pair.points[0] - a.first) as usize];
+            *nearest = nearest.min(one.length);
+            found.push(one);
+        });
+    }
+}
+
+/// Finds pairs of the cloth's faces and edges with what is sharp.
+fn find_at_edges(
+    a: &Side,
+    b: &Side,
+    reach: &Reach,
+    (walk, leaves): (&mut Walk, &mut Vec<(u32, u32)>),
+    found: &mut Vec<Found>,
+) {
+    leaves.clear();
+    walk.between_sharp((a.surface, a.places), (b.surface, b.places), b.sharper_than, |p, q| leaves.push((p, q)));
+    for &(p, q) in &*leaves {
         for s in a.surface.of_leaf(p) {
             for t in b.surface.of_leaf(q) {
-                if !a.places.of_triangles[s].meets(&b.places.of_triangles[t]) {
-                    continue;
+                if a.places.of_triangles[s].meets(&b.places.of_triangles[t]) {
+                    search::pairs_between((a, s), (b, t), reach, |one| found.push(one));
                 }
-                search::pairs_between((a, s), (b, t), reach, |one| {
-                    if one.is_of_face() {
-                        let nearest = &mut nearest[(one.pair.points[0] - a.first) as usize];
-                        *nearest = nearest.min(one.length);
-                    }
-                    found.push(one);
-                });
             }
         }
     }

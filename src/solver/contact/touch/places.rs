@@ -1,0 +1,91 @@
+//! Where particles are, from all cloths and back to them.
+
+use core::ops::Range;
+
+use bevy::math::Vec3A;
+
+use super::Touch;
+use crate::solver::{Instructions, Lanes, Scratch, contact::Shape, lanes, order::Order, step::Running};
+
+impl Touch {
+    /// Reads where all particles are, and where they were when the substep began.
+    pub(super) fn take_places(&mut self, cloths: &[Running]) {
+        self.first.clear();
+        self.first.push(0);
+        for cloth in cloths {
+            let first = self.first[self.first.len() - 1];
+            self.first.push(first + cloth.topology.particle_count() as u32);
+        }
+        let count = self.particle_count() + self.fixed.len();
+        for (i, cloth) in cloths.iter().enumerate() {
+            let particles = self.particles(i);
+            let Lanes { order, position, previous, .. } = &cloth.scratch.lanes;
+            for (values, of) in [(&mut self.points.position, position), (&mut self.points.previous, previous)] {
+                values.resize(count, Vec3A::ZERO);
+                of.store(*order, &mut values[particles.clone()], cloth.scratch.instructions);
+                if cloth.offset != Vec3A::ZERO {
+                    values[particles.clone()].iter_mut().for_each(|p| *p += cloth.offset);
+                }
+            }
+        }
+    }
+
+    /// Number of all particles.
+    pub(super) fn particle_count(&self) -> usize {
+        self.first[self.first.len() - 1] as usize
+    }
+
+    /// Numbers of the particles of a cloth.
+    pub(super) fn particles(&self, cloth: usize) -> Range<usize> {
+        self.first[cloth] as usize..self.first[cloth + 1] as usize
+    }
+
+    /// Hands back where particles are, and, where pairs have parted, where they were when the part `span` of the step began.
+    pub(super) fn give_places(&mut self, cloths: &mut [Running], span: Range<f32>) {
+        for (i, cloth) in cloths.iter_mut().enumerate() {
+            let particles = self.particles(i);
+            if self.points.has_parted {
+                let before = &mut self.points.previous[particles.clone()];
+                keep_out(cloth, before, &span);
+                let Scratch { lanes: Lanes { order, previous, .. }, instructions, .. } = &mut *cloth.scratch;
+                put(before, cloth.offset, previous, *order, *instructions);
+            }
+            let Scratch { lanes: Lanes { order, position, .. }, instructions, .. } = &mut *cloth.scratch;
+            put(&mut self.points.position[particles], cloth.offset, position, *order, *instructions);
+        }
+    }
+}
+
+fn put(places: &mut [Vec3A], offset: Vec3A, lanes: &mut lanes::Points, order: Order, instructions: Instructions) {
+    if offset != Vec3A::ZERO {
+        places.iter_mut().for_each(|p| *p -= offset);
+    }
+    lanes.load(order, places, instructions);
+}
+
+/// Takes particles that parted into a solid back to its surface: those that were outside at the start of the substep stay so,
+/// and aren't taken for ones that have begun inside.
+fn keep_out(cloth: &Running, before: &mut [Vec3A], span: &Range<f32>) {
+    let Lanes { order, previous, .. } = &cloth.scratch.lanes;
+    for (i, obstacle) in cloth.ctx.obstacles.iter().enumerate() {
+        let Shape::Solid(solid) = &obstacle.shape else { continue };
+        let distance = cloth.ctx.contact_distance() + obstacle.rounding;
+        let [pose, _] = cloth.scratch.bodies.poses(cloth.ctx, i, span.clone());
+        let to_local = pose.inverse();
+        let depth_at = |place: Vec3A| {
+            let surface = solid.surface(to_local.transform_point(place));
+            (distance - surface.distance, surface.normal)
+        };
+        for (particle, place) in before.iter_mut().enumerate() {
+            let from = previous.get(order.slot(particle as u32));
+            if *place - cloth.offset == from {
+                continue;
+            }
+            let (depth, normal) = depth_at(*place - cloth.offset);
+            let gained = depth.max(0.0) - depth_at(from).0.max(0.0);
+            if gained > 0.0 {
+                *place += pose.rotation * normal * gained;
+            }
+        }
+    }
+}
