@@ -59,7 +59,7 @@ fn a_strip_that_is_twisted_and_turned_back_ends_as_it_began() {
 }
 
 #[test]
-#[ignore = "101 pairs are left: what tangles in a rope doesn't untangle when it is turned back"]
+#[ignore = "40 pairs are left: what tangles in a rope doesn't untangle when it is turned back"]
 fn a_strip_that_is_twisted_faster_ends_as_it_began() {
     assert_untangled(twist::twist(&with_enough(32, 240)).unwrap(), 0.3, 0.0);
 }
