@@ -12,6 +12,10 @@ use super::{Stage, common, scene};
 /// How far scenes without a ground are off it, m.
 const LIFT: f32 = 1.0;
 
+/// How far what is drawn of obstacles and of the ground stays behind where they are, m: the cloth of these experiments has no
+/// thickness, and would flicker with what it lies on.
+const BEHIND: f32 = 0.003;
+
 /// Number of a cloth in its scene.
 #[derive(Component)]
 pub struct DrawnCloth(usize);
@@ -22,7 +26,8 @@ pub struct DrawnObstacle(usize);
 
 pub fn spawn(mut commands: Commands, mut studio: common::Studio, stage: Res<Stage>) {
     let scene = &stage.0;
-    let lift = if scene.solids.iter().any(|solid| matches!(solid, Solid::HalfSpace(_))) { 0.0 } else { LIFT };
+    let has_ground = scene.solids.iter().any(|solid| matches!(solid, Solid::HalfSpace(_)));
+    let lift = if has_ground { BEHIND } else { LIFT };
     let all = commands.spawn((Transform::from_xyz(0.0, lift, 0.0), Visibility::default())).id();
     let colors = [Color::srgb(0.20, 0.42, 0.58), Color::srgb(0.85, 0.62, 0.24), Color::srgb(0.70, 0.24, 0.20)];
     for (i, cloth) in scene.cloths.iter().enumerate() {
@@ -57,6 +62,8 @@ fn mesh_of(cloth: &scene::Cloth) -> Mesh {
 /// What is to be seen of an obstacle. The ground is there already.
 fn shape_of(solid: &Solid) -> Option<Mesh> {
     Some(match *solid {
+        // Not what is thin: it would be gone.
+        Solid::Sphere(Sphere { radius }) if radius > 0.1 => Sphere::new(radius - BEHIND).mesh().uv(128, 72),
         Solid::Sphere(sphere) => sphere.mesh().uv(64, 36),
         Solid::Cuboid(cuboid) => cuboid.into(),
         Solid::Capsule(capsule) => capsule.into(),

@@ -3,7 +3,7 @@
 use std::io;
 
 use bevy::math::Vec3;
-use bevy_drape::solver::{Elasticity, Material, Method, SelfCollision, SpringConstants, SpringKind};
+use bevy_drape::solver::SelfCollision;
 use clap::ValueEnum;
 
 use super::scene::{Scene, Settings, bullet, drape, fold, layers, needle, ribbon, storm, twist};
@@ -43,8 +43,8 @@ impl Experiment {
         }
     }
 
-    pub fn scene(self, n: u32) -> io::Result<Scene> {
-        let settings = |self_collision| settings(n, self_collision);
+    pub fn scene(self, n: u32, substeps: Option<u32>) -> io::Result<Scene> {
+        let settings = |self_collision| Settings { substeps, ..Settings::standard(n, 300, self_collision) };
         let (alone, robust) = (settings(SelfCollision::Off), settings(SelfCollision::Robust));
         match self {
             Self::Drape => {
@@ -64,30 +64,13 @@ impl Experiment {
     /// Where the camera is and what it looks at, m.
     pub fn view(self) -> (Vec3, Vec3) {
         match self {
-            Self::Ribbon => (Vec3::new(0.4, 0.35, 0.8), Vec3::new(0.0, 0.08, 0.0)),
-            Self::Twist => (Vec3::new(0.3, 1.1, 1.6), Vec3::Y),
-            Self::Storm | Self::Bullet => (Vec3::new(0.7, 1.5, 2.0), Vec3::Y),
-            Self::Fold => (Vec3::new(0.7, 0.8, 1.5), Vec3::new(0.0, 0.15, 0.0)),
-            Self::Drape | Self::Layers | Self::Needle => (Vec3::new(0.6, 1.0, 1.6), Vec3::new(0.0, 0.25, 0.0)),
+            Self::Ribbon => (Vec3::new(0.25, 0.28, 0.5), Vec3::new(0.0, 0.04, 0.0)),
+            Self::Twist => (Vec3::new(0.35, 1.15, 1.05), Vec3::Y),
+            Self::Storm => (Vec3::new(-0.3, 1.4, 2.5), Vec3::new(-0.35, 0.95, 0.0)),
+            Self::Bullet => (Vec3::new(0.45, 1.45, 1.05), Vec3::new(0.0, 1.0, 0.0)),
+            Self::Fold => (Vec3::new(0.95, 0.3, 0.35), Vec3::new(0.25, 0.06, 0.0)),
+            Self::Drape | Self::Layers => (Vec3::new(0.45, 0.75, 1.15), Vec3::new(0.0, 0.2, 0.0)),
+            Self::Needle => (Vec3::new(0.4, 0.85, 1.1), Vec3::new(0.0, 0.25, 0.0)),
         }
-    }
-}
-
-/// Those that the lab has by default.
-fn settings(n: u32, self_collision: SelfCollision) -> Settings {
-    let stiffness = [5000.0, 500.0, 20.0];
-    let spring = |kind: SpringKind| SpringConstants { stiffness: stiffness[kind.index()], damping: 0.0 };
-    let springs = Elasticity::Springs(SpringKind::ALL.map(spring));
-    Settings {
-        n,
-        frames: 300,
-        method: Method::Strands,
-        substeps: None,
-        max_strain: 0.01,
-        levels: None,
-        material: Material { damping: 1.0, friction: 0.5, ..Material::bare(0.2, springs) },
-        tether_slack: 0.002,
-        self_collision,
-        self_distance: 0.004,
     }
 }

@@ -27,6 +27,9 @@ struct Arguments {
     /// Particles along a metre
     #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=256))]
     n: u32,
+    /// Substeps a frame; by default as many as the strain needs
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
+    substeps: Option<u32>,
     #[command(flatten)]
     shared: common::Arguments,
 }
@@ -36,9 +39,9 @@ struct Arguments {
 struct Stage(Scene);
 
 fn main() -> std::io::Result<AppExit> {
-    let Arguments { experiment, n, shared } = Arguments::parse();
+    let Arguments { experiment, n, substeps, shared } = Arguments::parse();
     let (eye, look_at) = experiment.view();
-    let scene = experiment.scene(n)?;
+    let scene = experiment.scene(n, substeps)?;
     let setup = move |mut commands: Commands| {
         common::spawn_camera(&mut commands, eye, look_at);
     };

@@ -13,8 +13,8 @@ use super::{
     hang::hang,
     measure,
     mesh::MeshSource,
-    options::{DENSITY, Options, PinnedPart, Solver},
-    scene::FRAME,
+    options::{Options, PinnedPart, Solver},
+    scene::{DENSITY, FRAME},
 };
 
 /// Frames before the measurement: pools and buffers fill.

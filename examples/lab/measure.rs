@@ -66,8 +66,7 @@ fn line(name: &str, options: &Options, mesh: &MeshSource, scene: &Scene, substep
     let cloths = &scene.cloths;
     let last = &frames[frames.len().saturating_sub(LAST)..];
     let mean = |value: fn(&Look) -> f32| last.iter().map(|frame| value(&frame.look)).sum::<f32>() / last.len() as f32;
-    let most = |value: fn(&Look) -> f32| frames.iter().map(|frame| value(&frame.look)).fold(0.0, f32::max);
-    let worst_pairs = frames.iter().map(|frame| frame.look.intersecting_pairs).max().unwrap_or(0);
+    let worst = frames.iter().fold(Look::default(), |worst, frame| worst.worse_of(&frame.look));
     let end = frames.last().map(|frame| frame.look).unwrap_or_default();
     let mut line = json!({
         "scene": name,
@@ -88,21 +87,21 @@ fn line(name: &str, options: &Options, mesh: &MeshSource, scene: &Scene, substep
         "max_strain": mean(|look| look.max_strain),
         "p99_strain": mean(|look| look.p99_strain),
         "mean_strain": mean(|look| look.mean_strain),
-        "max_strain_over_time": most(|look| look.max_strain),
+        "max_strain_over_time": worst.max_strain,
         "self_collision": format!("{:?}", scene.surroundings.settings.self_collision).to_lowercase(),
         // Of any place of any triangle.
-        "max_penetration_m": most(|look| look.penetration),
-        "max_penetration_of_particles_m": most(|look| look.particle_penetration),
+        "max_penetration_m": worst.penetration,
+        "max_penetration_of_particles_m": worst.particle_penetration,
         "intersecting_pairs_end": end.intersecting_pairs,
-        "intersecting_pairs_worst": worst_pairs,
-        "intersecting_share_worst": worst_pairs as f64 / scene.triangle_count() as f64,
+        "intersecting_pairs_worst": worst.intersecting_pairs,
+        "intersecting_share_worst": worst.intersecting_pairs as f64 / scene.triangle_count() as f64,
         "max_speed_end": end.max_speed,
         "finite": cloths.iter().all(|cloth| cloth.particles.is_finite()),
         "peak_rss_mb": peak_rss_mb(),
     });
     if let Some(fault) = &scene.fault {
         line[format!("{}_end", fault.name)] = end.fault.into();
-        line[format!("{}_worst", fault.name)] = most(|look| look.fault).into();
+        line[format!("{}_worst", fault.name)] = worst.fault.into();
     }
     line
 }

@@ -8,10 +8,7 @@ use bevy_drape::{
 };
 use clap::{Args, ValueEnum};
 
-use super::scene::Settings;
-
-/// Areal density, kg/m².
-pub const DENSITY: f32 = 0.2;
+use super::scene::{DENSITY, STIFFNESS, Settings};
 
 #[derive(Args, Clone)]
 pub struct Options {
@@ -43,7 +40,7 @@ pub struct Options {
     #[arg(long, default_value_t = 0.002)]
     pub tether_slack: f32,
     /// Stiffness of springs along the threads, of those along diagonals, and of those that bend, N/m; 0 leaves them out
-    #[arg(long, value_names = ["STRUCTURAL", "SHEAR", "BEND"], num_args = 3, default_values_t = [5000.0, 500.0, 20.0])]
+    #[arg(long, value_names = ["STRUCTURAL", "SHEAR", "BEND"], num_args = 3, default_values_t = STIFFNESS)]
     pub stiffness: Vec<f32>,
     /// A preset in place of those springs and of 0.2 kg/m², as cotton_woven: its density, moduli and rigidity
     #[arg(long, value_parser = fabric)]
@@ -109,9 +106,13 @@ impl FromStr for Levels {
 impl Options {
     /// What they say of a scene, of which `self_collision` is what it is about.
     pub fn settings(&self, self_collision: SelfCollision) -> io::Result<Settings> {
+        let self_collision = match self.self_collision {
+            None => self_collision,
+            Some(SelfContact::Off) => SelfCollision::Off,
+            Some(SelfContact::Particles) => SelfCollision::Particles,
+            Some(SelfContact::Robust) => SelfCollision::Robust,
+        };
         Ok(Settings {
-            n: self.n,
-            frames: self.frames,
             method: match self.solver {
                 Solver::Strands => Method::Strands,
                 Solver::Xpbd => Method::Xpbd,
@@ -130,13 +131,8 @@ impl Options {
                 ..self.material().map_err(io::Error::other)?
             },
             tether_slack: self.tether_slack,
-            self_collision: match self.self_collision {
-                None => self_collision,
-                Some(SelfContact::Off) => SelfCollision::Off,
-                Some(SelfContact::Particles) => SelfCollision::Particles,
-                Some(SelfContact::Robust) => SelfCollision::Robust,
-            },
             self_distance: self.self_distance,
+            ..Settings::standard(self.n, self.frames, self_collision)
         })
     }
 

@@ -6,6 +6,7 @@ mod quiet;
 mod any_mesh;
 #[cfg(feature = "mesh_colliders")]
 mod bad_colliders;
+mod bad_contact;
 mod bad_meshes;
 mod bad_pins;
 mod bad_surroundings;

@@ -39,7 +39,6 @@ pub enum Form {
 
 pub const BOTH: [Engine; 2] = [Engine::Avian, Engine::Rapier];
 
-#[expect(dead_code, reason = "bodies that move are tested with what cloth gives them, which comes next")]
 impl Engine {
     /// An app with cloth and this engine, at 60 Hz: each update runs one step of both.
     pub fn app(self) -> App {

@@ -7,6 +7,7 @@
 mod common;
 mod engine;
 
+mod bodies;
 mod filters;
 mod missing_engines;
 mod places;

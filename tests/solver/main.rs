@@ -7,7 +7,9 @@ mod bodies;
 mod boundaries;
 mod contact;
 mod convergence;
+mod crowds;
 mod determinism;
+mod experiments;
 mod grabs;
 mod grain;
 mod instructions;
@@ -18,6 +20,11 @@ mod meshes;
 mod mounts;
 mod rates;
 mod robustness;
+#[allow(dead_code, unused_imports, reason = "shared with the lab")]
+#[path = "../../examples/lab/scene/mod.rs"]
+mod scene;
+mod self_collision;
+mod sharp;
 mod sheets;
 mod speed_limit;
 mod springs;

@@ -15,7 +15,7 @@ use bevy_drape::{
 use crate::bench_bed::{Bed, STABLE, springs};
 
 /// A box with this size, m, of twelve triangles that face out of it.
-fn cuboid(size: Vec3) -> TriangleMesh {
+pub fn cuboid(size: Vec3) -> TriangleMesh {
     let corner = |i: usize| Vec3A::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) - 0.5;
     let points = (0..8).map(|i| corner(i) * Vec3A::from(size)).collect();
     let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -24,7 +24,7 @@ fn cuboid(size: Vec3) -> TriangleMesh {
 }
 
 /// A ball of triangles.
-fn ball(radius: f32, subdivisions: u32) -> TriangleMesh {
+pub fn ball(radius: f32, subdivisions: u32) -> TriangleMesh {
     let mesh: Mesh = Sphere::new(radius).mesh().kind(SphereKind::Ico { subdivisions }).build();
     let Some(VertexAttributeValues::Float32x3(places)) = mesh.attribute(Mesh::ATTRIBUTE_POSITION) else {
         panic!("a sphere has positions")

@@ -50,6 +50,20 @@ impl Look {
             fault: scene.fault.as_ref().map_or(0.0, |fault| (fault.count)(scene)),
         }
     }
+
+    /// The worse of two, each value by itself.
+    pub fn worse_of(&self, other: &Self) -> Self {
+        Self {
+            max_strain: self.max_strain.max(other.max_strain),
+            p99_strain: self.p99_strain.max(other.p99_strain),
+            mean_strain: self.mean_strain.max(other.mean_strain),
+            penetration: self.penetration.max(other.penetration),
+            particle_penetration: self.particle_penetration.max(other.particle_penetration),
+            intersecting_pairs: self.intersecting_pairs.max(other.intersecting_pairs),
+            max_speed: self.max_speed.max(other.max_speed),
+            fault: self.fault.max(other.fault),
+        }
+    }
 }
 
 fn penetration(scene: &Scene) -> f32 {

@@ -2,25 +2,19 @@
 //!
 //! Here is what the lab and the tests share; nothing knows the command line.
 
-use std::{io, time::Instant};
-
 use bevy::{
-    math::{Isometry3d, Mat3A, Vec3A},
+    math::{Isometry3d, Vec3A},
     prelude::*,
     tasks::TaskPool,
 };
-use bevy_drape::{
-    build,
-    prelude::ClothGrid,
-    solver::{
-        self, Anchor, Effort, LevelPass, Material, Member, Method, Obstacle, Particles, Scratch, SelfCollision, Shape,
-        Solid, StepContext, Tethers, Topology, WindSource,
-    },
-};
+use bevy_drape::solver::{self, Member, Obstacle, Shape, Solid};
 
+mod cloth;
 mod crossing;
 mod depth;
 mod look;
+mod settings;
+mod surroundings;
 mod wave;
 
 pub mod bullet;
@@ -32,179 +26,13 @@ pub mod ribbon;
 pub mod storm;
 pub mod twist;
 
+pub use cloth::{Cloth, Rig};
 pub use look::Look;
+pub use settings::{DENSITY, STIFFNESS, Settings};
+pub use surroundings::Surroundings;
 
 /// Duration of a frame, s.
 pub const FRAME: f32 = 1.0 / 60.0;
-
-/// What all cloths of a scene have in common.
-#[derive(Clone)]
-pub struct Settings {
-    /// Particles along a metre.
-    pub n: u32,
-    /// Frames that the scene has time for.
-    pub frames: u32,
-    pub method: Method,
-    /// As many as the strain needs where it doesn't say.
-    pub substeps: Option<u32>,
-    /// The largest strain that is wanted, no unit.
-    pub max_strain: f32,
-    /// Those that go with the substeps where it doesn't say.
-    pub levels: Option<Vec<LevelPass>>,
-    pub material: Material,
-    pub tether_slack: f32,
-    pub self_collision: SelfCollision,
-    /// Distance that parts of cloth keep from each other, m.
-    pub self_distance: f32,
-}
-
-impl Settings {
-    /// Substeps and levels for a mesh.
-    pub fn effort(&self, topology: &Topology) -> Effort {
-        let mut effort = match (self.method, self.substeps) {
-            (Method::Strands, None) => Effort::to_hold(self.max_strain, topology),
-            (Method::Strands, Some(substeps)) => Effort::fixed(substeps, Effort::levels_for(substeps, topology)),
-            (_, substeps) => Effort::fixed(substeps.unwrap_or(8), Vec::new()),
-        };
-        if let Some(levels) = &self.levels {
-            effort.levels.clone_from(levels);
-            effort.careful_levels.clone_from(levels);
-        }
-        effort
-    }
-
-    /// Time of all frames, s.
-    pub fn duration(&self) -> f32 {
-        self.frames as f32 * FRAME
-    }
-
-    /// Distance between particles, m.
-    pub fn cell(&self) -> f32 {
-        1.0 / (self.n - 1) as f32
-    }
-
-    /// A rectangle of `width` x `height` metres with `n` particles a metre.
-    pub fn grid(&self, width: f32, height: f32) -> ClothGrid {
-        let particles = |length: f32| (length / self.cell()).round() as u32 + 1;
-        ClothGrid::new(width, height, particles(width), particles(height))
-    }
-
-    /// A cloth with the particles and springs of `mesh`, free and at rest.
-    ///
-    /// # Errors
-    ///
-    /// Why the mesh can't be a cloth.
-    pub fn cloth(&self, mesh: &Mesh) -> io::Result<Cloth> {
-        let begun = Instant::now();
-        let topology = build::topology_of(mesh, Mat3A::IDENTITY).map_err(io::Error::other)?;
-        let build_ms = begun.elapsed().as_secs_f64() * 1e3;
-        let rest = topology.rest.iter().copied().map(Vec3A::from).collect();
-        Ok(Cloth {
-            particles: Particles::at_rest(rest, &topology, &self.material),
-            rig: Rig { anchors: Vec::new(), tethers: None, effort: self.effort(&topology) },
-            scratch: Scratch::default(),
-            topology,
-            build_ms,
-            tethers_ms: 0.0,
-        })
-    }
-}
-
-/// A cloth.
-pub struct Cloth {
-    pub topology: Topology,
-    pub particles: Particles,
-    pub rig: Rig,
-    pub scratch: Scratch,
-    /// Time that the topology took, ms.
-    pub build_ms: f64,
-    /// Time that the tethers took, ms.
-    pub tethers_ms: f64,
-}
-
-/// What a cloth hangs by, and how much work is made for it.
-pub struct Rig {
-    pub anchors: Vec<Anchor>,
-    pub tethers: Option<Tethers>,
-    pub effort: Effort,
-}
-
-impl Cloth {
-    /// Puts each particle where `place` says for its place at rest.
-    pub fn placed(mut self, place: impl Fn(Vec3) -> Vec3A) -> Self {
-        for (position, &rest) in self.particles.position.iter_mut().zip(&self.topology.rest) {
-            *position = place(rest);
-        }
-        self
-    }
-
-    /// Holds the particles of which `is_held` is true at rest, where they are now.
-    pub fn held(mut self, is_held: impl Fn(Vec3) -> bool) -> Self {
-        let held: Vec<u32> =
-            (0..).zip(&self.topology.rest).filter(|(_, rest)| is_held(**rest)).map(|(i, _)| i).collect();
-        self.hold(&held);
-        self
-    }
-
-    /// Holds these particles where they are.
-    pub fn hold(&mut self, pins: &[u32]) {
-        for &particle in pins {
-            let place = self.particles.position[particle as usize];
-            self.particles.inverse_mass[particle as usize] = 0.0;
-            self.rig.anchors.push(Anchor { particle, start: place, end: place });
-        }
-    }
-
-    /// Leads all that is held to where `place` says for its place at rest, within the next frame.
-    pub fn lead(&mut self, place: impl Fn(Vec3) -> Vec3A) {
-        for anchor in &mut self.rig.anchors {
-            anchor.start = anchor.end;
-            anchor.end = place(self.topology.rest[anchor.particle as usize]);
-        }
-    }
-}
-
-/// What acts on all cloths of a scene.
-pub struct Surroundings {
-    pub settings: Settings,
-    pub obstacles: Vec<Obstacle>,
-    pub winds: Vec<WindSource>,
-    /// kg/m³
-    pub fluid_density: f32,
-}
-
-impl Surroundings {
-    /// All that surrounds a cloth during a frame, with threads of `pool` to help.
-    pub fn context<'a>(&'a self, rig: &'a Rig, pool: Option<&'a TaskPool>) -> StepContext<'a> {
-        let settings = &self.settings;
-        StepContext {
-            dt: FRAME,
-            method: settings.method,
-            effort: &rig.effort,
-            max_substeps: u32::MAX,
-            material: settings.material,
-            gravity: Vec3A::NEG_Y * 9.81,
-            anchors: &rig.anchors,
-            mounts: &[],
-            mounted: &[],
-            grabs: &[],
-            max_velocity: 50.0,
-            tethers: rig.tethers.as_ref(),
-            tether_slack: settings.tether_slack,
-            margin: 0.0,
-            max_depenetration_velocity: 1.0,
-            self_collision: settings.self_collision,
-            collision_layers: 1,
-            collision_mask: 1,
-            self_distance: settings.self_distance,
-            self_friction: 0.3,
-            obstacles: &self.obstacles,
-            fluid_density: self.fluid_density,
-            winds: &self.winds,
-            pool,
-        }
-    }
-}
 
 /// Changes a scene before a frame, of which it is told at how many seconds it ends.
 type Lead = Box<dyn Fn(&mut Scene, f32) + Send + Sync>;

@@ -1,0 +1,59 @@
+//! The lab's experiments, watched frame by frame.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use bevy_drape::solver::SelfCollision;
+
+use crate::{
+    bench_bed::bits,
+    scene::{Look, Scene, Settings},
+};
+
+/// What an experiment was like.
+#[derive(Debug)]
+pub struct Watched {
+    /// After the last frame.
+    pub end: Look,
+    /// The worst of all frames, each value by itself.
+    pub worst: Look,
+    /// Of pairs of triangles that pass through each other, over the triangles that there are.
+    pub worst_share: f32,
+}
+
+/// The lab's own settings for sheets that meet themselves.
+pub fn robust(n: u32, frames: u32) -> Settings {
+    Settings::standard(n, frames, SelfCollision::Robust)
+}
+
+/// Those for sheets that don't.
+pub fn alone(n: u32, frames: u32) -> Settings {
+    Settings::standard(n, frames, SelfCollision::Off)
+}
+
+/// Runs a scene for as many frames as it has time for.
+pub fn watch(mut scene: Scene) -> Watched {
+    let frames = scene.surroundings.settings.frames;
+    let mut watched = Watched { end: Look::default(), worst: Look::default(), worst_share: 0.0 };
+    for frame in 0..frames {
+        scene.lead();
+        scene.step(None);
+        let finite = scene.cloths.iter().all(|cloth| cloth.particles.is_finite());
+        assert!(finite, "frame {frame}: something isn't finite");
+        let look = Look::at(&scene);
+        watched.worst = watched.worst.worse_of(&look);
+        watched.end = look;
+    }
+    watched.worst_share = watched.worst.intersecting_pairs as f32 / scene.triangle_count() as f32;
+    watched
+}
+
+/// A number that stands for the bits of all cloths after `frames`.
+pub fn hash(scene: &mut Scene, frames: u32) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    for _ in 0..frames {
+        scene.lead();
+        scene.step(None);
+    }
+    scene.cloths.iter().for_each(|cloth| bits(&cloth.particles).hash(&mut hasher));
+    hasher.finish()
+}
