@@ -51,8 +51,6 @@ pub struct Pair {
     pub taper: f32,
     /// Coulomb friction, no unit.
     pub friction: f32,
-    /// The face is of a closed mesh: right behind it is inside.
-    pub is_of_solid: bool,
     /// Distance when it was last looked at, m; negative after having passed through.
     pub gap: f32,
     /// Unit vector from the second feature to the first, on the side where it belongs.
@@ -131,6 +129,59 @@ pub struct Given {
     pub angular: Vec3A,
 }
 
+/// How two features part.
+#[derive(Clone, Copy, Debug)]
+pub struct Parting {
+    pub points: [usize; 4],
+    /// Weight of each point in the way from the second feature's closest point to the first's.
+    pub weights: [f32; 4],
+    /// Unit vector from the second feature to the first.
+    pub normal: Vec3A,
+    /// By how much they came too near within the substep, m.
+    pub gained: f32,
+    /// By how much they part of what they were too near before, m: without gaining speed.
+    pub parted: f32,
+    /// Coulomb friction, no unit.
+    pub friction: f32,
+}
+
+impl Parting {
+    /// Moves the points by their weights and inverse masses, with friction against their slide. Returns what the obstacle among
+    /// them got if it is a body; nothing where nothing can be moved.
+    #[inline]
+    pub fn happen(&self, points: &mut Points, body: Option<&OnBody>) -> Option<Given> {
+        let Self { points: all, weights, normal, gained, parted, friction } = *self;
+        let places = all.map(|i| points.position[i]);
+        let before = all.map(|i| points.previous[i]);
+        let masses = all.map(|i| points.inverse_mass[i]);
+        let give: f32 = weights.iter().zip(masses).map(|(weight, w)| weight * weight * w).sum();
+        let beside = body.map(|on| on.beside(weights, places));
+        let meets = |direction: Vec3A| match (body, beside) {
+            (Some(on), Some(beside)) => give + on.body.inverse_mass_at(beside, direction),
+            _ => give,
+        };
+        let give_along = meets(normal);
+        if give_along <= 0.0 {
+            return None;
+        }
+        let part = normal * (parted / give_along);
+        let push = gained / give_along;
+        let slide = weighted(weights, places) - weighted(weights, before);
+        let (along, length) = (slide - normal * slide.dot(normal)).normalize_and_length();
+        let mut change = normal * push;
+        if length > 0.0 {
+            change -= along * (length / meets(along)).min(friction * push);
+        }
+        for ((&i, weight), w) in all.iter().zip(weights).zip(masses) {
+            points.position[i] += (change + part) * (weight * w);
+            points.previous[i] += part * (weight * w);
+        }
+        points.has_parted |= part != Vec3A::ZERO;
+        let linear = if body.is_some_and(|on| on.is_first) { change } else { -change };
+        Some(Given { linear, angular: beside.map_or(Vec3A::ZERO, |beside| beside.cross(linear)) })
+    }
+}
+
 impl Pair {
     /// Brings the features as far apart as they should be, with friction. Those that were nearer before part by no more than
     /// `most_parted` (m). Where they touched, returns what the obstacle among them got, if it is a body.
@@ -147,11 +198,7 @@ impl Pair {
         let Nearest { weights, between } = self.features.nearest(places);
         let (direction, length) = between.normalize_and_length();
         let (mut normal, mut gap) = if length > 0.0 { (direction, length) } else { (self.normal, 0.0) };
-        let is_behind = match self.is_of_solid && weights[1..].iter().all(|&weight| weight < 0.0) {
-            true => normal.dot((places[2] - places[1]).cross(places[3] - places[1])) < 0.0,
-            false => normal.dot(self.normal) < 0.0 && (self.gap < 0.0 || self.has_passed(before, places)),
-        };
-        if is_behind {
+        if normal.dot(self.normal) < 0.0 && (self.gap < 0.0 || self.has_passed(before, places)) {
             (normal, gap) = (-normal, -gap);
         }
         // Of an edge's places, the far end is at weight 1.
@@ -165,35 +212,13 @@ impl Pair {
         if gap >= target {
             return None;
         }
-        let masses = all.map(|i| points.inverse_mass[i]);
-        let give: f32 = weights.iter().zip(masses).map(|(weight, w)| weight * weight * w).sum();
-        let beside = body.map(|on| on.beside(weights, places));
-        let meets = |direction: Vec3A| match (body, beside) {
-            (Some(on), Some(beside)) => give + on.body.inverse_mass_at(beside, direction),
-            _ => give,
-        };
-        let give_along = meets(normal);
-        if give_along <= 0.0 {
-            return None;
-        }
         // What was too near before parts without gaining speed.
         let gained = (old_gap.min(target) - gap).max(0.0);
-        let part = normal * ((target - gap - gained) / give_along);
-        let push = gained / give_along;
-        let slide = weighted(weights, places) - weighted(weights, before);
-        let (along, length) = (slide - normal * slide.dot(normal)).normalize_and_length();
-        let mut change = normal * push;
-        if length > 0.0 {
-            change -= along * (length / meets(along)).min(self.friction * push);
-        }
-        for ((&i, weight), w) in all.iter().zip(weights).zip(masses) {
-            points.position[i] += (change + part) * (weight * w);
-            points.previous[i] += part * (weight * w);
-        }
-        points.has_parted |= part != Vec3A::ZERO;
+        let parting =
+            Parting { points: all, weights, normal, gained, parted: target - gap - gained, friction: self.friction };
+        let given = parting.happen(points, body)?;
         self.gap = target;
-        let linear = if body.is_some_and(|on| on.is_first) { change } else { -change };
-        Some(Given { linear, angular: beside.map_or(Vec3A::ZERO, |beside| beside.cross(linear)) })
+        Some(given)
     }
 
     /// Whether the features met on their way from `before` to `after`.

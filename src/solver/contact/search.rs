@@ -247,7 +247,6 @@ fn found_between(features: Features, sides: [&Side; 4], points: [u32; 4], reach:
     let (direction, length) = nearest.between.normalize_and_length();
     let normal = if length > 0.0 { direction } else { Vec3A::Y };
     let points = [s0.first + p0, s1.first + p1, s2.first + p2, s3.first + p3];
-    let pair =
-        Pair { features, points, distance, taper, friction: reach.friction, is_of_solid: false, gap: length, normal };
+    let pair = Pair { features, points, distance, taper, friction: reach.friction, gap: length, normal };
     found(Found { pair, is_first_of_a: true, face: 0, length, nearest, approach });
 }

@@ -16,12 +16,14 @@ use super::{
 use crate::solver::{Lanes, SelfCollision, StepContext, step::Running};
 
 mod cloths;
+mod faces;
 mod lead;
 mod obstacle;
 mod places;
 
+use faces::Faces;
 use lead::BodyWay;
-use obstacle::{Approach, AtObstacle, Fixed};
+use obstacle::{Approach, AtObstacle, Fixed, Meetings};
 
 /// How far particles may come off their way before there is another search: this share of the mean edge at most.
 const SLACK: f32 = 0.2;
@@ -90,6 +92,7 @@ pub struct Touch {
     slack: Vec<f32>,
     places: Vec<Places>,
     pairs: Vec<Pair>,
+    faces: Faces,
     tangles: Vec<Tangle>,
     is_tangled: Vec<bool>,
     leaves: Vec<(u32, u32)>,
@@ -105,13 +108,19 @@ impl Touch {
     /// Begins a step: nothing is known yet. Returns whether there may be anything to do.
     pub fn begin(&mut self, cloths: &[Running]) -> bool {
         self.is_begun = false;
-        self.pairs.clear();
-        self.tangles.clear();
+        self.forget();
         let mut is_needed = cloths.iter().any(Running::collides);
         for (number, cloth) in cloths.iter().enumerate() {
             is_needed |= cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
         }
         is_needed
+    }
+
+    fn forget(&mut self) {
+        self.pairs.clear();
+        self.tangles.clear();
+        self.faces.corners.clear();
+        self.faces.meetings.clear();
     }
 
     /// Looks for pairs in what is left of a step of `dt` seconds, of which the share `now` is over, if it is time to.
@@ -126,8 +135,7 @@ impl Touch {
         let now = span.start;
         self.searched = now..self.horizon(cloths, span, dt);
         self.take_ways(cloths, dt);
-        self.pairs.clear();
-        self.tangles.clear();
+        self.forget();
         self.fixed.clear();
         self.body_ways.clear();
         self.is_tangled.clear();
@@ -146,7 +154,8 @@ impl Touch {
             let (slack, span) = (self.slack[number], self.searched.clone());
             let at = Approach { cloth, number, first, total, ways, slack, span, dt };
             for i in 0..cloth.ctx.obstacles.len() {
-                self.at_obstacle.search(&at, i, &mut self.walk, &mut self.fixed, &mut self.pairs);
+                let mut into = Meetings { fixed: &mut self.fixed, pairs: &mut self.pairs, faces: &mut self.faces };
+                self.at_obstacle.search(&at, i, &mut self.walk, &mut into);
             }
         }
         let count = self.start.len() + self.fixed.len();
@@ -220,7 +229,7 @@ impl Touch {
     pub fn solve(&mut self, cloths: &mut [Running], span: Range<f32>, h: f32, dt: f32) -> u32 {
         self.search(cloths, span.clone(), dt);
         let mut touched = 0;
-        if !self.pairs.is_empty() || !self.tangles.is_empty() {
+        if !(self.pairs.is_empty() && self.tangles.is_empty() && self.faces.meetings.is_empty()) {
             self.lead_fixed(cloths, span.clone());
             self.points.has_parted = false;
             let most_parted = cloths.iter().map(|cloth| cloth.ctx.max_depenetration_velocity).fold(0.0, f32::max) * h;
@@ -238,8 +247,15 @@ impl Touch {
 
     /// Solves all pairs, and returns how many touched.
     fn solve_pairs(&mut self, most_parted: f32) -> u32 {
-        let Self { pairs, points, .. } = self;
-        pairs.iter_mut().map(|pair| u32::from(pair.solve(points, most_parted, None).is_some())).sum()
+        let Self { pairs, points, faces: Faces { corners, meetings }, .. } = self;
+        let mut touched = 0;
+        for pair in pairs {
+            touched += u32::from(pair.solve(points, most_parted, None).is_some());
+        }
+        for meeting in meetings {
+            touched += u32::from(meeting.solve(corners, points, most_parted, None).is_some());
+        }
+        touched
     }
 
     /// Whether a particle was off its way when the part `span` of the step began, or is now.

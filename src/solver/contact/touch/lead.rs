@@ -6,7 +6,12 @@ use bevy::math::{Isometry3d, Vec3A};
 
 use super::{Touch, obstacle::Fixed};
 use crate::solver::{
-    contact::{MeshShape, Shape, pair::OnBody, sweep},
+    contact::{
+        MeshShape, Shape,
+        body::Moved,
+        pair::{Given, OnBody},
+        sweep,
+    },
     step::Running,
 };
 
@@ -77,35 +82,65 @@ impl Touch {
 
     /// Solves all pairs, one after the other, and pushes the bodies among the obstacles. Returns how many touched.
     pub(super) fn solve_pairs_on_bodies(&mut self, cloths: &mut [Running], span: Range<f32>, most_parted: f32) -> u32 {
-        let count = self.start.len();
         let mut touched = 0;
         for i in 0..self.pairs.len() {
             let mut pair = self.pairs[i];
-            let of_obstacle = pair.points.iter().position(|&point| point as usize >= count);
-            let on = of_obstacle.and_then(|k| {
-                let fixed = self.fixed[pair.points[k] as usize - count];
-                let cloth = &cloths[fixed.cloth as usize];
-                // The latest pushes have moved it.
-                let body = *cloth.scratch.bodies.get(fixed.obstacle as usize)?;
-                for point in pair.points.map(|point| point as usize).into_iter().filter(|&point| point >= count) {
-                    let local = self.local(cloth, &self.fixed[point - count], span.end);
-                    self.points.position[point] = body.end.transform_point(local) + cloth.offset;
-                }
-                Some((fixed, body, cloth.offset, k == 0))
-            });
-            let on_body = on.as_ref().map(|(_, body, offset, is_first)| OnBody {
-                body,
-                centre: body.centre + *offset,
-                is_first: *is_first,
-            });
-            let given = pair.solve(&mut self.points, most_parted, on_body.as_ref());
+            let is_first = pair.points[0] as usize >= self.start.len();
+            let on = self.body_of(cloths, &pair.points, is_first, span.end);
+            let given = pair.solve(&mut self.points, most_parted, on.as_ref().map(Touched::on).as_ref());
             self.pairs[i] = pair;
             touched += u32::from(given.is_some());
-            if let (Some(given), Some((fixed, ..))) = (given, on) {
-                let bodies = &mut cloths[fixed.cloth as usize].scratch.bodies;
-                bodies.push(fixed.obstacle as usize, given.linear, given.angular);
+            push(cloths, on, given);
+        }
+        for i in 0..self.faces.meetings.len() {
+            let meeting = self.faces.meetings[i];
+            let [first, end] = meeting.faces.map(|k| k as usize);
+            let mut on = None;
+            for k in first..end {
+                let corners = self.faces.corners[k];
+                on = self.body_of(cloths, &corners, false, span.end);
             }
+            let Self { faces, points, .. } = &mut *self;
+            let given = meeting.solve(&faces.corners, points, most_parted, on.as_ref().map(Touched::on).as_ref());
+            touched += u32::from(given.is_some());
+            push(cloths, on, given);
         }
         touched
+    }
+
+    /// The body that some points are of, at the moment `t` of the step, after what has moved it: they are brought there.
+    fn body_of(&mut self, cloths: &[Running], points: &[u32], is_first: bool, t: f32) -> Option<Touched> {
+        let count = self.start.len();
+        let of_obstacle = points.iter().find(|&&point| point as usize >= count)?;
+        let fixed = self.fixed[*of_obstacle as usize - count];
+        let cloth = &cloths[fixed.cloth as usize];
+        let body = *cloth.scratch.bodies.get(fixed.obstacle as usize)?;
+        for point in points.iter().map(|&point| point as usize).filter(|&point| point >= count) {
+            let local = self.local(cloth, &self.fixed[point - count], t);
+            self.points.position[point] = body.end.transform_point(local) + cloth.offset;
+        }
+        Some(Touched { fixed, body, centre: body.centre + cloth.offset, is_first })
+    }
+}
+
+/// A body that something touches.
+struct Touched {
+    fixed: Fixed,
+    body: Moved,
+    /// From the origin of the points, m.
+    centre: Vec3A,
+    is_first: bool,
+}
+
+impl Touched {
+    fn on(&self) -> OnBody<'_> {
+        OnBody { body: &self.body, centre: self.centre, is_first: self.is_first }
+    }
+}
+
+/// Gives a body what something that touched it gives to it.
+fn push(cloths: &mut [Running], on: Option<Touched>, given: Option<Given>) {
+    if let (Some(Given { linear, angular }), Some(Touched { fixed, .. })) = (given, on) {
+        cloths[fixed.cloth as usize].scratch.bodies.push(fixed.obstacle as usize, linear, angular);
     }
 }

@@ -4,6 +4,7 @@ use core::ops::Range;
 
 use bevy::math::{Isometry3d, Vec3A};
 
+use super::faces::{Faces, Meeting};
 use crate::solver::{
     contact::{
         Obstacle, Shape,
@@ -59,6 +60,13 @@ pub struct Fixed {
     pub point: u32,
 }
 
+/// What of cloths and obstacles may meet.
+pub struct Meetings<'a> {
+    pub fixed: &'a mut Vec<Fixed>,
+    pub pairs: &'a mut Vec<Pair>,
+    pub faces: &'a mut Faces,
+}
+
 /// What it takes to search at one obstacle after the other.
 #[derive(Clone, Debug, Default)]
 pub struct AtObstacle {
@@ -74,6 +82,8 @@ pub struct AtObstacle {
     /// Number of each of the obstacle's points among all.
     number: Vec<u32>,
     deformed: Deformed,
+    /// Particles, of the cloth, and faces that they may meet.
+    at_faces: Vec<(u32, u32)>,
     /// Outlines of the solids among each cloth's obstacles, with what they were drawn for.
     outlines: Vec<Vec<(Solid, [f32; 3], Outline)>>,
 }
@@ -184,12 +194,13 @@ impl AtObstacle {
         &self.outlines[fixed.cloth as usize][fixed.obstacle as usize].2
     }
 
-    /// Adds the pairs of a cloth and obstacle `i` of it.
-    pub fn search(&mut self, at: &Approach, i: usize, walk: &mut Walk, fixed: &mut Vec<Fixed>, pairs: &mut Vec<Pair>) {
+    /// Adds what of a cloth and obstacle `i` of it may meet.
+    pub fn search(&mut self, at: &Approach, i: usize, walk: &mut Walk, into: &mut Meetings) {
         let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
         let surface = cloth.surface();
         let distance = distance_to(obstacle, cloth);
-        let Self { position, way, places, leaves, found, nearest, whereabouts, number, deformed, outlines } = self;
+        let Self { position, way, places, leaves, found, nearest, whereabouts, number, deformed, outlines, at_faces } =
+            self;
         let Some(target) = target(obstacle, &at.span, deformed, || &outlines[at.number][i].2) else { return };
         // In the obstacle's own frame it stays, and the cloth's way is that past it.
         let (poses, slack) = (at.poses(i), at.slack(i));
@@ -239,22 +250,25 @@ impl AtObstacle {
         let is_inside = |particle: u32| whereabouts.get(particle as usize) == Some(&Whereabouts::Inside);
         number.clear();
         number.resize(target.points.len(), u32::MAX);
-        let to_world = poses[0].rotation;
-        let mut add = |mut pair: Pair, of_obstacle: core::ops::Range<usize>| {
-            for k in of_obstacle {
-                let point = pair.points[k];
-                let number = &mut number[point as usize];
-                if *number == u32::MAX {
-                    *number = (at.total + fixed.len()) as u32;
-                    fixed.push(Fixed { cloth: at.number as u32, obstacle: i as u32, point });
-                }
-                pair.points[k] = *number;
+        let Meetings { fixed, pairs, faces } = into;
+        let mut numbered = |point: u32| {
+            let number = &mut number[point as usize];
+            if *number == u32::MAX {
+                *number = (at.total + fixed.len()) as u32;
+                fixed.push(Fixed { cloth: at.number as u32, obstacle: i as u32, point });
             }
-            pair.normal = to_world * pair.normal;
-            pairs.push(pair);
+            *number
         };
+        at_faces.clear();
         for one in &*found {
             let mut pair = one.pair;
+            if one.is_of_face() {
+                let particle = pair.points[0] - at.first;
+                if nearest[particle as usize].leaves_way_to(one, &target) {
+                    at_faces.push((particle, one.face as u32));
+                }
+                continue;
+            }
             if let Shape::Solid(solid) = &obstacle.shape
                 && depth_of(one, solid, position, at.first) > 2.0 * cloth.sink()
             {
@@ -262,50 +276,35 @@ impl AtObstacle {
                 continue;
             }
             // The cloth's features come first but where a corner of the obstacle meets a face.
-            let of_obstacle = match (pair.features, one.is_first_of_a) {
-                (Features::PointFace, false) => 0..1,
-                (Features::EdgeEdge, _) => 2..4,
-                (Features::PointFace | Features::PointPoint, _) => 1..4,
-            };
+            let of_obstacle = if pair.features == Features::PointFace { 0..1 } else { 2..4 };
             let of_cloth = (0..4).filter(|k| !of_obstacle.contains(k));
-            let has_inside = of_cloth.into_iter().any(|k| is_inside(pair.points[k] - at.first));
-            if one.is_of_face() {
-                let nearest = nearest[(pair.points[0] - at.first) as usize];
-                // Farther faces count where the particle may slide to them; out of the inside, the nearest.
-                if !nearest.leaves_way_to(one, &target) || has_inside && one.length > nearest.length {
-                    continue;
-                }
-                if has_inside {
-                    (pair.normal, pair.gap) = (-pair.normal, -pair.gap);
-                } else if target.normals.is_some() && is_behind(one, &target) {
-                    // The far side of something thin.
-                    continue;
-                }
-                pair.is_of_solid = target.normals.is_some();
-            } else if has_inside {
+            if of_cloth.into_iter().any(|k| is_inside(pair.points[k] - at.first)) {
                 // It is on its way out.
                 continue;
             }
-            add(pair, of_obstacle);
+            for k in of_obstacle {
+                pair.points[k] = numbered(pair.points[k]);
+            }
+            pair.normal = poses[0].rotation * pair.normal;
+            pairs.push(pair);
         }
         // Deep inside, nothing was near.
         for particle in (0..position.len() as u32).filter(|&particle| is_inside(particle)) {
-            let place = position[particle as usize];
-            if nearest[particle as usize].length < f32::INFINITY || cloth.is_fixed(particle) {
-                continue;
+            if nearest[particle as usize].length == f32::INFINITY && !cloth.is_fixed(particle) {
+                let place = position[particle as usize];
+                let near = inside::nearest(place, target.surface, target.places, target.points);
+                at_faces.extend(near.map(|(face, _)| (particle, face as u32)));
             }
-            let near = inside::nearest(place, target.surface, target.places, target.points);
-            let Some((triangle, weights)) = near else { continue };
-            let [a, b, c] = target.surface.triangles[triangle];
-            let [p, q, r] = [a, b, c].map(|k| target.points[k as usize]);
-            let out = p * weights.x + q * weights.y + r * weights.z - place;
-            let (normal, depth) = out.normalize_and_length();
-            let features = Features::PointFace;
-            let points = [at.first + particle, a, b, c];
-            add(
-                Pair { features, points, distance, taper: 0.0, friction, is_of_solid: true, gap: -depth, normal },
-                1..4,
-            );
+        }
+        at_faces.sort_unstable();
+        let is_closed = target.normals.is_some();
+        for some in at_faces.chunk_by(|(particle, _), (other, _)| particle == other) {
+            let first = faces.corners.len() as u32;
+            faces
+                .corners
+                .extend(some.iter().map(|&(_, face)| target.surface.triangles[face as usize].map(&mut numbered)));
+            let (particle, end) = (at.first + some[0].0, faces.corners.len() as u32);
+            faces.meetings.push(Meeting { particle, faces: [first, end], distance, friction, is_closed });
         }
     }
 }
@@ -425,11 +424,6 @@ fn depth_of(found: &Found, solid: &Solid, position: &[Vec3A], first: u32) -> f32
     let places = pair.points.into_iter().zip(weights).filter(|&(_, weight)| weight > 0.0);
     let place = places.map(|(point, weight)| position[(point - first) as usize] * weight).sum();
     -solid.surface(place).distance
-}
-
-/// Whether a particle is behind the plane of a face.
-fn is_behind(found: &Found, target: &Target) -> bool {
-    found.nearest.between.dot(target.normal(found.face)) < 0.0
 }
 
 /// On which side of its nearest face a particle is, by the normal of the closest place.
