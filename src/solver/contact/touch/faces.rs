@@ -31,6 +31,18 @@ pub struct Meeting {
     pub friction: f32,
     /// Whether the mesh encloses a volume: behind its faces is inside.
     pub is_closed: bool,
+    /// Whether no face rises above another: pushed out of one, a particle isn't in another.
+    pub is_convex: bool,
+}
+
+/// Whether none of some faces rises above the plane of another, but by what rounding makes.
+pub fn are_convex(faces: impl Iterator<Item = [Vec3A; 3]> + Clone) -> bool {
+    faces.clone().all(|plane| {
+        let outward = normal(plane);
+        let far = 1e-3 * outward.length();
+        let mut corners = faces.clone().flatten();
+        corners.all(|corner| outward.dot(corner - plane[0]) <= far * (corner - plane[0]).length())
+    })
 }
 
 /// A face when a substep begins and now.
@@ -116,7 +128,7 @@ impl Meeting {
         let faces = &corners[first..end];
         let mut given = None;
         // A body has moved after the first.
-        for _ in 0..if body.is_some() { 1 } else { Self::PASSES } {
+        for _ in 0..if body.is_some() || self.is_convex { 1 } else { Self::PASSES } {
             let Some(parting) = self.parting(faces, points, most_parted) else { break };
             let Some(once) = parting.happen(points, body) else { break };
             given = Some(once);
@@ -135,8 +147,10 @@ impl Meeting {
             let outward = normal(face.now);
             let height = outward.dot(place - face.now[0]);
             let far = self.distance * outward.length();
-            let passed = face.passed(way, self.distance).filter(|&(_, side)| !self.is_closed || side > 0.0);
-            if let Some((share, side)) = passed
+            // Out of what is closed, particles may go.
+            if (!self.is_closed || height < 0.0)
+                && let Some((share, side)) = face.passed(way, self.distance)
+                && (!self.is_closed || side > 0.0)
                 && first.is_none_or(|(least, ..)| share < least)
             {
                 first = Some((share, side, face));

@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use bevy::math::{Isometry3d, Vec3A};
 
-use super::faces::{Faces, Meeting};
+use super::faces::{self, Faces, Meeting};
 use crate::solver::{
     contact::{
         Obstacle, Shape,
@@ -160,8 +160,12 @@ struct Target<'a> {
 impl Target<'_> {
     /// Normal of a face, as long as twice its area, m².
     fn normal(&self, face: usize) -> Vec3A {
-        let [a, b, c] = self.surface.triangles[face].map(|i| self.points[i as usize]);
+        let [a, b, c] = self.corners(face);
         (b - a).cross(c - a)
+    }
+
+    fn corners(&self, face: usize) -> [Vec3A; 3] {
+        self.surface.triangles[face].map(|i| self.points[i as usize])
     }
 
     /// How sharp its corners and edges have to be that the triangles of a cloth sink in too deep at them.
@@ -250,7 +254,7 @@ impl AtObstacle {
         let is_inside = |particle: u32| whereabouts.get(particle as usize) == Some(&Whereabouts::Inside);
         number.clear();
         number.resize(target.points.len(), u32::MAX);
-        let Meetings { fixed, pairs, faces } = into;
+        let Meetings { fixed, pairs, faces: into_faces } = into;
         let mut numbered = |point: u32| {
             let number = &mut number[point as usize];
             if *number == u32::MAX {
@@ -299,12 +303,21 @@ impl AtObstacle {
         at_faces.sort_unstable();
         let is_closed = target.normals.is_some();
         for some in at_faces.chunk_by(|(particle, _), (other, _)| particle == other) {
-            let first = faces.corners.len() as u32;
-            faces
+            let first = into_faces.corners.len() as u32;
+            into_faces
                 .corners
                 .extend(some.iter().map(|&(_, face)| target.surface.triangles[face as usize].map(&mut numbered)));
-            let (particle, end) = (at.first + some[0].0, faces.corners.len() as u32);
-            faces.meetings.push(Meeting { particle, faces: [first, end], distance, friction, is_closed });
+            let (particle, end) = (at.first + some[0].0, into_faces.corners.len() as u32);
+            let corners = |&(_, face): &(u32, u32)| target.corners(face as usize);
+            let is_convex = is_closed && faces::are_convex(some.iter().map(corners));
+            into_faces.meetings.push(Meeting {
+                particle,
+                faces: [first, end],
+                distance,
+                friction,
+                is_closed,
+                is_convex,
+            });
         }
     }
 }
