@@ -5,6 +5,7 @@ use bevy::math::{Vec3, Vec3A};
 use super::{
     pair::{Features, Nearest, Pair},
     surface::{Bounds, Places, Surface, edges_of},
+    tangle,
 };
 
 /// Where points are when a search is made, and where they go.
@@ -175,6 +176,41 @@ pub fn points_at_faces((a, p): (&Side, u32), (b, q): (&Side, u32), reach: &Reach
             }
         }
     }
+}
+
+/// Corners of triangle `t` of `b` that have come through triangle `s` of `a`: a sharp edge pierces it, and that end of it is
+/// the nearer one to go back.
+pub fn tips_through((a, s): (&Side, usize), (b, t): (&Side, usize)) -> impl Iterator<Item = u32> {
+    let triangle = a.surface.triangles[s].map(|i| a.place(i));
+    // What is farther through than the cloth's own edges are long has come to stay.
+    let farthest = a.surface.longest_edge;
+    let edges = edges_of(b.surface.triangles[t]).into_iter().zip(b.surface.owned[t].edges);
+    edges.filter(|&(_, sharpness)| sharpness > b.sharper_than).filter_map(move |([p, q], _)| {
+        let (from, to) = (b.place(p), b.place(q));
+        let share = tangle::pierces([from, to], triangle)?;
+        let (tip, beyond) = if share < 0.5 { (p, share) } else { (q, 1.0 - share) };
+        (beyond * from.distance(to) <= farthest).then_some(tip)
+    })
+}
+
+/// The pair of a corner of `b` that has come through triangle `s` of `a`, and is to go back.
+pub fn back_through((a, s): (&Side, usize), (b, tip): (&Side, u32), reach: &Reach) -> Found {
+    let triangle = a.surface.triangles[s];
+    let [u, v, w] = triangle.map(|i| a.place(i));
+    let nearest = Features::PointFace.nearest([b.place(tip), u, v, w]);
+    let (direction, length) = nearest.between.normalize_and_length();
+    let normal = if length > 0.0 { -direction } else { (v - u).cross(w - u).normalize_or(Vec3A::Y) };
+    let [p, q, r] = triangle.map(|i| a.first + i);
+    let pair = Pair {
+        features: Features::PointFace,
+        points: [b.first + tip, p, q, r],
+        distance: reach.distance + b.radius(tip),
+        taper: 0.0,
+        friction: reach.friction,
+        gap: -length,
+        normal,
+    };
+    Found { pair, is_first_of_a: false, face: s, length, nearest, approach: 0.0 }
 }
 
 /// Shows the pairs of points of leaf `p` of `a` and leaf `q` of `b` that may touch as balls.

@@ -42,6 +42,9 @@ const FALL: f32 = 0.5;
 const SINK: f32 = 0.0005;
 const SINK_OF_DISTANCE: f32 = 0.5;
 
+/// How often pairs with obstacles are solved again within a substep.
+const AGAIN_AT_OBSTACLES: u32 = 8;
+
 /// Whether two cloths meet, or one itself.
 fn meet(one: &StepContext, other: &StepContext) -> bool {
     let is_on = one.self_collision != SelfCollision::Off && other.self_collision != SelfCollision::Off;
@@ -95,6 +98,8 @@ pub struct Touch {
     faces: Faces,
     tangles: Vec<Tangle>,
     is_tangled: Vec<bool>,
+    /// Numbers of the pairs that touched an obstacle.
+    at_obstacles: Vec<u32>,
     leaves: Vec<(u32, u32)>,
     walk: Walk,
     fixed: Vec<Fixed>,
@@ -247,10 +252,27 @@ impl Touch {
 
     /// Solves all pairs, and returns how many touched.
     fn solve_pairs(&mut self, most_parted: f32) -> u32 {
-        let Self { pairs, points, faces: Faces { corners, meetings }, .. } = self;
+        let count = self.particle_count() as u32;
+        let Self { pairs, points, at_obstacles, faces: Faces { corners, meetings }, .. } = self;
         let mut touched = 0;
-        for pair in pairs {
-            touched += u32::from(pair.solve(points, most_parted, None).is_some());
+        at_obstacles.clear();
+        for (i, pair) in pairs.iter_mut().enumerate() {
+            if pair.solve(points, most_parted, None).is_some() {
+                touched += 1;
+                if pair.points.iter().any(|&point| point >= count) {
+                    at_obstacles.push(i as u32);
+                }
+            }
+        }
+        // What is sharp gives no way, and so one pair undoes what another did, more than between cloths.
+        for _ in 0..AGAIN_AT_OBSTACLES {
+            let mut is_any_left = false;
+            for &i in &*at_obstacles {
+                is_any_left |= pairs[i as usize].solve(points, 0.0, None).is_some();
+            }
+            if !is_any_left {
+                break;
+            }
         }
         for meeting in meetings {
             touched += u32::from(meeting.solve(corners, points, most_parted, None).is_some());

@@ -74,9 +74,9 @@ impl Face {
         Self { corners, then: at(&points.previous), now: at(&points.position) }
     }
 
-    /// The share of a particle's way from `before` to `place` at which it goes through the face, or by it within `distance`
+    /// The share of a particle's way from `before` to `place` at which it goes through the face, or by it within `tolerance`
     /// (m), and on which side it was: 1 in front, -1 behind.
-    fn passed(&self, [before, place]: [Vec3A; 2], distance: f32) -> Option<(f32, f32)> {
+    fn passed(&self, [before, place]: [Vec3A; 2], tolerance: f32) -> Option<(f32, f32)> {
         let start = normal(self.then).dot(before - self.then[0]);
         let end = normal(self.now).dot(place - self.now[0]);
         if (start >= 0.0) == (end >= 0.0) {
@@ -86,7 +86,7 @@ impl Face {
         let met = before.lerp(place, share);
         let corners = [0, 1, 2].map(|k| self.then[k].lerp(self.now[k], share));
         let off = met - weighted(closest::on_triangle(met, corners), corners);
-        (off.length_squared() <= distance * distance).then_some((share, if start >= 0.0 { 1.0 } else { -1.0 }))
+        (off.length_squared() <= tolerance * tolerance).then_some((share, if start >= 0.0 { 1.0 } else { -1.0 }))
     }
 }
 
@@ -114,6 +114,9 @@ fn at(place: Vec3A, corners: [Vec3A; 3], is_closed: bool) -> At {
 impl Meeting {
     /// Where a particle lies between faces, pushed out of one it comes into another: so many are left in a substep.
     const PASSES: u32 = 3;
+
+    /// How far beyond its edges a face is gone through all the same, as a share of the distance: nothing slips between two.
+    const SEAM: f32 = 0.1;
 
     /// Keeps the particle off its faces, with friction. What was too near before parts by no more than `most_parted` (m).
     /// Where it touched, returns what the mesh got, if it is a body.
@@ -149,7 +152,7 @@ impl Meeting {
             let far = self.distance * outward.length();
             // Out of what is closed, particles may go.
             if (!self.is_closed || height < 0.0)
-                && let Some((share, side)) = face.passed(way, self.distance)
+                && let Some((share, side)) = face.passed(way, Self::SEAM * self.distance)
                 && (!self.is_closed || side > 0.0)
                 && first.is_none_or(|(least, ..)| share < least)
             {

@@ -82,6 +82,8 @@ pub struct AtObstacle {
     /// Number of each of the obstacle's points among all.
     number: Vec<u32>,
     deformed: Deformed,
+    /// Sharp corners and the triangles of the cloth that they have come through.
+    pierced: Vec<(u32, usize)>,
     /// Particles, of the cloth, and faces that they may meet.
     at_faces: Vec<(u32, u32)>,
     /// Outlines of the solids among each cloth's obstacles, with what they were drawn for.
@@ -203,8 +205,20 @@ impl AtObstacle {
         let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
         let surface = cloth.surface();
         let distance = distance_to(obstacle, cloth);
-        let Self { position, way, places, leaves, found, nearest, whereabouts, number, deformed, outlines, at_faces } =
-            self;
+        let Self {
+            position,
+            way,
+            places,
+            leaves,
+            found,
+            nearest,
+            whereabouts,
+            number,
+            deformed,
+            outlines,
+            at_faces,
+            pierced,
+        } = self;
         let Some(target) = target(obstacle, &at.span, deformed, || &outlines[at.number][i].2) else { return };
         // In the obstacle's own frame it stays, and the cloth's way is that past it.
         let (poses, slack) = (at.poses(i), at.slack(i));
@@ -233,7 +247,7 @@ impl AtObstacle {
         if target.has_faces {
             find_at_faces(&a, &b, &reach, (walk, leaves), found, nearest);
         }
-        find_at_edges(&a, &b, &reach, (walk, leaves), found);
+        find_at_edges(&a, &b, &reach, (walk, leaves), found, pierced);
         whereabouts.clear();
         if let Some(normals) = target.normals {
             whereabouts.resize(position.len(), Whereabouts::Unknown);
@@ -273,8 +287,10 @@ impl AtObstacle {
                 }
                 continue;
             }
+            let thickness = target.radii.iter().copied().fold(0.0, f32::max);
             if let Shape::Solid(solid) = &obstacle.shape
-                && depth_of(one, solid, position, at.first) > 2.0 * cloth.sink()
+                && !pierced.contains(&(pair.points[0], one.face))
+                && depth_of(one, solid, position, at.first) > 2.0 * cloth.sink() + thickness
             {
                 // Its particles find the way out.
                 continue;
@@ -415,18 +431,29 @@ fn find_at_edges(
     reach: &Reach,
     (walk, leaves): (&mut Walk, &mut Vec<(u32, u32)>),
     found: &mut Vec<Found>,
+    pierced: &mut Vec<(u32, usize)>,
 ) {
     leaves.clear();
+    pierced.clear();
     walk.between_sharp((a.surface, a.places), (b.surface, b.places), b.sharper_than, |p, q| leaves.push((p, q)));
     for &(p, q) in &*leaves {
         for s in a.surface.of_leaf(p) {
             for t in b.surface.of_leaf(q) {
                 if a.places.of_triangles[s].meets(&b.places.of_triangles[t]) {
                     search::pairs_between((a, s), (b, t), reach, |one| found.push(one));
+                    pierced.extend(search::tips_through((a, s), (b, t)).map(|tip| (tip, s)));
                 }
             }
         }
     }
+    if pierced.is_empty() {
+        return;
+    }
+    // Those are to go back.
+    pierced.sort_unstable();
+    pierced.dedup();
+    found.retain(|one| one.is_first_of_a || !pierced.contains(&(one.pair.points[0], one.face)));
+    found.extend(pierced.iter().map(|&(tip, face)| search::back_through((a, face), (b, tip), reach)));
 }
 
 /// How deep the cloth's place of a pair is inside of a solid, m.

@@ -45,8 +45,9 @@ impl Touch {
         for (i, cloth) in cloths.iter_mut().enumerate() {
             let particles = self.particles(i);
             if self.points.has_parted {
+                let now = &mut self.points.position[particles.clone()];
                 let before = &mut self.points.previous[particles.clone()];
-                keep_out(cloth, before, &span);
+                keep_out(cloth, now, before, &span);
                 let Scratch { lanes: Lanes { order, previous, .. }, instructions, .. } = &mut *cloth.scratch;
                 put(before, cloth.offset, previous, *order, *instructions);
             }
@@ -63,9 +64,9 @@ fn put(places: &mut [Vec3A], offset: Vec3A, lanes: &mut lanes::Points, order: Or
     lanes.load(order, places, instructions);
 }
 
-/// Takes particles that parted into a solid back to its surface: those that were outside at the start of the substep stay so,
-/// and aren't taken for ones that have begun inside.
-fn keep_out(cloth: &Running, before: &mut [Vec3A], span: &Range<f32>) {
+/// Takes particles that parted into a solid back to its surface, without a change of speed: those that were outside at the start
+/// of the substep stay so, and aren't taken for ones that have begun inside.
+fn keep_out(cloth: &Running, now: &mut [Vec3A], before: &mut [Vec3A], span: &Range<f32>) {
     let Lanes { order, previous, .. } = &cloth.scratch.lanes;
     for (i, obstacle) in cloth.ctx.obstacles.iter().enumerate() {
         let Shape::Solid(solid) = &obstacle.shape else { continue };
@@ -76,7 +77,7 @@ fn keep_out(cloth: &Running, before: &mut [Vec3A], span: &Range<f32>) {
             let surface = solid.surface(to_local.transform_point(place));
             (distance - surface.distance, surface.normal)
         };
-        for (particle, place) in before.iter_mut().enumerate() {
+        for (particle, (place, now)) in before.iter_mut().zip(&mut *now).enumerate() {
             let from = previous.get(order.slot(particle as u32));
             if *place - cloth.offset == from {
                 continue;
@@ -84,7 +85,9 @@ fn keep_out(cloth: &Running, before: &mut [Vec3A], span: &Range<f32>) {
             let (depth, normal) = depth_at(*place - cloth.offset);
             let gained = depth.max(0.0) - depth_at(from).0.max(0.0);
             if gained > 0.0 {
-                *place += pose.rotation * normal * gained;
+                let out = pose.rotation * normal * gained;
+                *place += out;
+                *now += out;
             }
         }
     }
