@@ -28,7 +28,7 @@ pub(super) mod touch;
 
 pub(super) use body::Bodies;
 pub use mesh::MeshShape;
-pub(super) use near::{Near, is_any_near};
+pub(super) use near::{Near, near_obstacles};
 pub(super) use project::project;
 pub use solid::{Solid, Surface};
 

@@ -9,8 +9,9 @@ pub struct Effort {
     pub substeps: u32,
     /// Iterations of the coarse levels. Without tethers, there are none.
     pub levels: Vec<LevelPass>,
-    /// Substeps where more is at stake: something is near that the cloth may touch, a hand holds it, or no tethers do. Where
-    /// its triangles and edges meet those of cloth, it takes half as many more, and 16 at least, unless they are fixed.
+    /// Substeps where more is at stake: something is near that the cloth may touch, a hand holds it, or no tethers do. Unless
+    /// they are fixed, it takes half as many more where its triangles and edges meet those of cloth, and 16 at least; three
+    /// times as many near solids with edges or tips, or thin ones, and 32 at least.
     pub careful_substeps: u32,
     /// Levels of those.
     pub careful_levels: Vec<LevelPass>,
@@ -19,13 +20,15 @@ pub struct Effort {
 }
 
 /// How much is at stake in a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Care {
     None,
     /// Something is near that the cloth may touch, a hand holds it, or no tethers do.
     Some,
     /// Its triangles and edges may meet those of cloth: what passes through is hard to bring back.
-    Most,
+    Robust,
+    /// Something that is sharp is near, as a solid; so many substeps would take it past half an edge in each.
+    Sharp(f32),
 }
 
 impl Effort {
@@ -37,8 +40,12 @@ impl Effort {
 
     /// With fewer, a pile lets go of its order under what falls on it. As many in all steps: where they change, the load that
     /// layers bear gives them a kick.
-    const LEAST_WITH_MOST_CARE: f32 = 16.0;
-    const MORE_WITH_MOST_CARE: f32 = 1.5;
+    const LEAST_WITH_ROBUST: f32 = 16.0;
+    const MORE_WITH_ROBUST: f32 = 1.5;
+
+    /// With fewer, a needle and the corner of a box come through the triangles of a cloth that falls on them from 0.25 m.
+    const LEAST_WITH_SHARP: f32 = 32.0;
+    const MORE_WITH_SHARP: f32 = 3.0;
 
     /// What a cloth of 64 x 64 particles, 1 m wide and hung by two corners, is stretched while it swings in one substep
     /// of 1/60 s, no unit. It grows with this power of the particles along a side; without rows and columns, on threads
@@ -93,16 +100,20 @@ impl Effort {
 
     /// Substeps and levels of a step of `dt` seconds.
     pub(super) fn of_step(&self, care: Care, dt: f32) -> (u32, &[LevelPass]) {
-        let (substeps, levels) = match care {
-            Care::None => (self.substeps as f32, &self.levels),
-            Care::Some => (self.careful_substeps as f32, &self.careful_levels),
-            Care::Most if self.follows_time_step => {
-                let substeps = Self::MORE_WITH_MOST_CARE * self.careful_substeps as f32;
-                (substeps.max(Self::LEAST_WITH_MOST_CARE), &self.careful_levels)
-            }
-            Care::Most => (self.careful_substeps as f32, &self.careful_levels),
-        };
         let factor = if self.follows_time_step { dt * 60.0 } else { 1.0 };
+        let (substeps, levels) = match care {
+            Care::None => (self.substeps, &self.levels),
+            Care::Some | Care::Robust | Care::Sharp(_) => (self.careful_substeps, &self.careful_levels),
+        };
+        let substeps = match care {
+            _ if !self.follows_time_step => substeps as f32,
+            Care::None | Care::Some => substeps as f32,
+            Care::Robust => (Self::MORE_WITH_ROBUST * substeps as f32).max(Self::LEAST_WITH_ROBUST),
+            Care::Sharp(wanted) => {
+                let least = (Self::MORE_WITH_SHARP * substeps as f32).max(Self::LEAST_WITH_SHARP);
+                (wanted / factor).clamp(least, 2.0 * least)
+            }
+        };
         // A step of 1/60 s isn't longer than that by a rounding.
         ((substeps * factor - 0.01).ceil().max(1.0) as u32, levels)
     }

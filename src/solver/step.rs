@@ -7,7 +7,10 @@ use bevy::{math::Vec3A, tasks::TaskPool};
 use super::{
     Lattice, LevelPass, Method, Particles, Scratch, SelfCollision, StepContext, StepReport, Topology,
     constraint::{anchor, grab, weave::Last},
-    contact::{self, touch::Touch},
+    contact::{
+        self,
+        touch::{self, Touch},
+    },
     effort::Care,
     explicit,
     force::wind,
@@ -140,13 +143,15 @@ impl<'a> Plan<'a> {
         if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
             return None;
         }
-        let is_near = contact::is_any_near(particles, ctx, dt);
+        let is_near = contact::near_obstacles(particles, ctx, dt).next().is_some();
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
         let touches = ctx.self_collision != SelfCollision::Off;
         let is_mounted = !ctx.mounted.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
+        let for_sharp = if is_near { touch::substeps_for_sharp(particles, topology, ctx, dt) } else { 0.0 };
         let care = match (ctx.self_collision, with_care) {
-            (SelfCollision::Robust, _) => Care::Most,
+            _ if for_sharp > 0.0 => Care::Sharp(for_sharp),
+            (SelfCollision::Robust, _) => Care::Robust,
             (_, true) => Care::Some,
             (_, false) => Care::None,
         };

@@ -80,19 +80,20 @@ impl Ball {
     }
 }
 
-/// Whether an obstacle is so near that the cloth may touch it within a step of `dt` seconds.
-pub(in crate::solver) fn is_any_near(particles: &Particles, ctx: &StepContext, dt: f32) -> bool {
-    if ctx.obstacles.is_empty() {
-        return false;
-    }
+/// Obstacles that are so near that the cloth may touch them within a step of `dt` seconds.
+pub(in crate::solver) fn near_obstacles<'a>(
+    particles: &Particles,
+    ctx: &StepContext<'a>,
+    dt: f32,
+) -> impl Iterator<Item = &'a Obstacle> {
     let ends = ctx.anchors.iter().map(|anchor| anchor.end).chain(ctx.grabs.iter().map(|grab| grab.end));
-    let places = particles.position.iter().copied().chain(ends);
+    let places = particles.position.iter().copied().chain(ends).filter(|_| !ctx.obstacles.is_empty());
     let (low, high) = places.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let fastest = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
     let cloth = Ball::around(low, high);
     // A step ahead, and once more for what it gains in speed.
     let reach = ctx.contact_distance() + 2.0 * fastest * dt + GAINED;
-    ctx.obstacles.iter().any(|obstacle| {
+    ctx.obstacles.iter().filter(move |obstacle| {
         let way = obstacle.start.translation.distance(obstacle.end.translation) + obstacle.rounding;
         let Some((place, radius)) = obstacle.ball() else {
             let Shape::Solid(solid) = obstacle.shape else { return true };

@@ -27,46 +27,72 @@ pub struct Outline {
 const RIM: u32 = 32;
 
 impl Outline {
-    /// Follows `solid`, for cloth whose edges are no longer than `edge` (m), which keeps a distance of `distance` (m) and may
-    /// sink in by `sink` (m).
-    pub fn of(solid: &Solid, edge: f32, distance: f32, sink: f32) -> Self {
+    /// Follows `solid`, as `tightness` asks for.
+    pub fn of(solid: &Solid, tightness: Tightness) -> Self {
         let mut outline = Drawing::default();
-        // How far a chord sinks into what is round.
-        let is_thin = |radius: f32| {
-            let round = radius + distance;
-            let depth = if round > edge / 2.0 { edge * edge / (8.0 * round) } else { edge / 2.0 };
-            depth > sink
-        };
-        let is_caught = |sine: f32| sine * edge / 2.0 > sink;
-        const RIGHT: f32 = core::f32::consts::FRAC_1_SQRT_2;
+        if !tightness.is_pierced_by(solid) {
+            return outline.finish();
+        }
         match *solid {
-            Solid::Sphere(Sphere { radius }) if is_thin(radius) => outline.bone([Vec3A::ZERO; 2], [radius; 2]),
-            Solid::Capsule(Capsule3d { radius, half_length }) if is_thin(radius) => {
+            Solid::Sphere(Sphere { radius }) => outline.bone([Vec3A::ZERO; 2], [radius; 2]),
+            Solid::Capsule(Capsule3d { radius, half_length }) => {
                 outline.bone([-half_length, half_length].map(|y| Vec3A::Y * y), [radius; 2]);
             }
-            Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length })
-                if is_thin(radius_top.min(radius_bottom)) =>
-            {
+            Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length }) => {
                 outline.bone([-half_length, half_length].map(|y| Vec3A::Y * y), [radius_bottom, radius_top]);
             }
-            Solid::Cuboid(Cuboid { half_size }) if is_caught(RIGHT) => outline.cuboid(half_size.into()),
-            Solid::Cylinder(Cylinder { radius, half_height }) if is_caught(RIGHT) => {
+            Solid::Cuboid(Cuboid { half_size }) => outline.cuboid(half_size.into()),
+            Solid::Cylinder(Cylinder { radius, half_height }) => {
                 outline.rim(radius, half_height);
                 outline.rim(radius, -half_height);
-                if is_thin(radius) && half_height > radius {
+                if tightness.is_thin(radius) && half_height > radius {
                     let end = half_height - radius;
                     outline.bone([-end, end].map(|y| Vec3A::Y * y), [radius; 2]);
                 }
             }
-            Solid::Cone(Cone { radius, height }) if is_caught(RIGHT) => {
+            Solid::Cone(Cone { radius, height }) => {
                 outline.rim(radius, -height / 2.0);
                 // The ball that touches side and base; the cone narrows from it to the tip.
                 let inner = radius * height / (radius + (radius * radius + height * height).sqrt());
                 outline.bone([Vec3A::Y * (inner - height / 2.0), Vec3A::Y * (height / 2.0)], [inner, 0.0]);
             }
-            _ => {}
+            Solid::HalfSpace(_) => {}
         }
         outline.finish()
+    }
+}
+
+/// How tightly a cloth lies on what it lies on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tightness {
+    /// Its longest edge, m.
+    pub edge: f32,
+    /// Distance that it keeps, m.
+    pub distance: f32,
+    /// How deep its edges may sink in, m.
+    pub sink: f32,
+}
+
+impl Tightness {
+    /// Whether a solid has anything that comes between particles.
+    pub fn is_pierced_by(self, solid: &Solid) -> bool {
+        // The sine of half a right angle is that by which edges fall off to both sides.
+        let is_caught = core::f32::consts::FRAC_1_SQRT_2 * self.edge / 2.0 > self.sink;
+        match *solid {
+            Solid::Sphere(Sphere { radius }) | Solid::Capsule(Capsule3d { radius, .. }) => self.is_thin(radius),
+            Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, .. }) => {
+                self.is_thin(radius_top.min(radius_bottom))
+            }
+            Solid::Cuboid(_) | Solid::Cylinder(_) | Solid::Cone(_) => is_caught,
+            Solid::HalfSpace(_) => false,
+        }
+    }
+
+    /// Whether a chord of the cloth sinks too deep into what is round.
+    fn is_thin(self, radius: f32) -> bool {
+        let (round, edge) = (radius + self.distance, self.edge);
+        let depth = if round > edge / 2.0 { edge * edge / (8.0 * round) } else { edge / 2.0 };
+        depth > self.sink
     }
 }
 
@@ -143,7 +169,7 @@ mod tests {
             Solid::Cone(Cone::new(0.1, 0.4)),
         ];
         for solid in solids {
-            let outline = Outline::of(&solid, 0.1, 0.001, 0.0005);
+            let outline = Outline::of(&solid, Tightness { edge: 0.1, distance: 0.001, sink: 0.0005 });
             assert!(!outline.points.is_empty(), "{solid:?}");
             for (&point, radius) in outline.points.iter().zip(&outline.radii) {
                 assert!(solid.surface(point).distance < 1e-5 - radius, "{solid:?}: {point}");
@@ -153,6 +179,7 @@ mod tests {
 
     #[test]
     fn what_is_round_enough_has_none() {
-        assert!(Outline::of(&Solid::Sphere(Sphere::new(0.3)), 0.022, 0.0, 0.0005).points.is_empty());
+        let tightness = Tightness { edge: 0.022, distance: 0.0, sink: 0.0005 };
+        assert!(Outline::of(&Solid::Sphere(Sphere::new(0.3)), tightness).points.is_empty());
     }
 }

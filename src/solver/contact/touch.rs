@@ -13,7 +13,11 @@ use super::{
     surface::{Places, Surface, Walk},
     tangle::Tangle,
 };
-use crate::solver::{Lanes, SelfCollision, StepContext, step::Running};
+use crate::solver::{
+    Lanes, Particles, SelfCollision, StepContext, Topology,
+    contact::{Shape, near},
+    step::Running,
+};
 
 mod cloths;
 mod faces;
@@ -53,6 +57,25 @@ fn meet(one: &StepContext, other: &StepContext) -> bool {
     is_on && (is_same || is_in)
 }
 
+/// How deep triangles of a cloth may sink into obstacles, m.
+fn sink(ctx: &StepContext) -> f32 {
+    ctx.margin.max(SINK).max(SINK_OF_DISTANCE * ctx.contact_distance())
+}
+
+/// Into how many substeps to cut a step of `dt` seconds so that nothing sharp goes by more than half an edge of a cloth in one
+/// of them; 0 where nothing sharp is near.
+pub fn substeps_for_sharp(particles: &Particles, topology: &Topology, ctx: &StepContext, dt: f32) -> f32 {
+    let speed = || particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
+    let near = near::near_obstacles(particles, ctx, dt);
+    let sharp = near.filter(|obstacle| match &obstacle.shape {
+        Shape::Solid(solid) => obstacle::tightness(obstacle, topology, ctx).is_pierced_by(solid),
+        Shape::Mesh(_) => false,
+    });
+    let ways = sharp.map(|obstacle| obstacle.start.translation.distance(obstacle.end.translation));
+    let way = ways.map(|way| way + speed() * dt).fold(0.0, f32::max);
+    way / (0.5 * topology.surface().mean_edge)
+}
+
 /// What of a cloth matters here.
 impl Running<'_> {
     fn collides(&self) -> bool {
@@ -62,11 +85,6 @@ impl Running<'_> {
     /// Distance that the cloth keeps from cloth, m.
     fn self_distance(&self, mode: SelfCollision) -> f32 {
         self.topology.self_distance(mode, self.ctx.self_distance)
-    }
-
-    /// How deep triangles may sink into obstacles, m.
-    fn sink(&self) -> f32 {
-        self.ctx.margin.max(SINK).max(SINK_OF_DISTANCE * self.ctx.contact_distance())
     }
 
     fn is_fixed(&self, particle: u32) -> bool {

@@ -4,13 +4,17 @@ use core::ops::Range;
 
 use bevy::math::{Isometry3d, Vec3A};
 
-use super::faces::{self, Faces, Meeting};
+use super::{
+    faces::{self, Faces, Meeting},
+    sink,
+};
 use crate::solver::{
+    StepContext, Topology,
     contact::{
         Obstacle, Shape,
         inside::{self, Whereabouts},
         mesh::{MeshShape, PseudoNormals},
-        outline::Outline,
+        outline::{Outline, Tightness},
         pair::{Features, Pair},
         search::{self, Found, Reach, Side, Ways},
         solid::Solid,
@@ -87,7 +91,7 @@ pub struct AtObstacle {
     /// Particles, of the cloth, and faces that they may meet.
     at_faces: Vec<(u32, u32)>,
     /// Outlines of the solids among each cloth's obstacles, with what they were drawn for.
-    outlines: Vec<Vec<(Solid, [f32; 3], Outline)>>,
+    outlines: Vec<Vec<(Solid, Tightness, Outline)>>,
 }
 
 /// The face that is nearest to a particle.
@@ -172,7 +176,7 @@ impl Target<'_> {
 
     /// How sharp its corners and edges have to be that the triangles of a cloth sink in too deep at them.
     fn sharper_than(&self, cloth: &Running) -> f32 {
-        if self.has_faces { 2.0 * cloth.sink() / cloth.surface().longest_edge } else { 0.0 }
+        if self.has_faces { 2.0 * sink(cloth.ctx) / cloth.surface().longest_edge } else { 0.0 }
     }
 }
 
@@ -184,9 +188,7 @@ impl AtObstacle {
         for (i, obstacle) in cloth.ctx.obstacles.iter().enumerate() {
             is_needed |= match &obstacle.shape {
                 Shape::Solid(solid) => {
-                    let distance = distance_to(obstacle, cloth);
-                    let needs = [cloth.surface().longest_edge, distance, cloth.sink()];
-                    draw(&mut self.outlines, number, i, solid, needs);
+                    draw(&mut self.outlines, number, i, solid, tightness(obstacle, cloth.topology, cloth.ctx));
                     !self.outlines[number][i].2.points.is_empty()
                 }
                 Shape::Mesh(_) => true,
@@ -204,7 +206,7 @@ impl AtObstacle {
     pub fn search(&mut self, at: &Approach, i: usize, walk: &mut Walk, into: &mut Meetings) {
         let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
         let surface = cloth.surface();
-        let distance = distance_to(obstacle, cloth);
+        let distance = distance_to(obstacle, cloth.ctx);
         let Self {
             position,
             way,
@@ -290,7 +292,7 @@ impl AtObstacle {
             let thickness = target.radii.iter().copied().fold(0.0, f32::max);
             if let Shape::Solid(solid) = &obstacle.shape
                 && !pierced.contains(&(pair.points[0], one.face))
-                && depth_of(one, solid, position, at.first) > 2.0 * cloth.sink() + thickness
+                && depth_of(one, solid, position, at.first) > 2.0 * sink(cloth.ctx) + thickness
             {
                 // Its particles find the way out.
                 continue;
@@ -339,22 +341,29 @@ impl AtObstacle {
 }
 
 /// Distance that a cloth keeps from an obstacle, m.
-fn distance_to(obstacle: &Obstacle, cloth: &Running) -> f32 {
-    cloth.ctx.contact_distance().max(LEAST) + obstacle.rounding
+fn distance_to(obstacle: &Obstacle, ctx: &StepContext) -> f32 {
+    ctx.contact_distance().max(LEAST) + obstacle.rounding
+}
+
+/// How tightly a cloth lies on an obstacle.
+pub fn tightness(obstacle: &Obstacle, topology: &Topology, ctx: &StepContext) -> Tightness {
+    Tightness { edge: topology.surface().longest_edge, distance: distance_to(obstacle, ctx), sink: sink(ctx) }
 }
 
 /// Draws the outline of obstacle `i` of a cloth, where it isn't drawn yet for what the cloth `needs`.
-fn draw(outlines: &mut Vec<Vec<(Solid, [f32; 3], Outline)>>, cloth: usize, i: usize, solid: &Solid, needs: [f32; 3]) {
+fn draw(outlines: &mut Vec<Vec<(Solid, Tightness, Outline)>>, cloth: usize, i: usize, solid: &Solid, needs: Tightness) {
     if outlines.len() <= cloth {
         outlines.resize_with(cloth + 1, Vec::new);
     }
     let outlines = &mut outlines[cloth];
     if outlines.len() <= i {
-        outlines.resize_with(i + 1, || (*solid, [f32::NAN; 3], Outline::default()));
+        outlines.resize_with(i + 1, || {
+            (*solid, Tightness { edge: f32::NAN, distance: 0.0, sink: 0.0 }, Outline::default())
+        });
     }
     let (drawn, met, outline) = &mut outlines[i];
     if *drawn != *solid || *met != needs {
-        (*drawn, *met, *outline) = (*solid, needs, Outline::of(solid, needs[0], needs[1], needs[2]));
+        (*drawn, *met, *outline) = (*solid, needs, Outline::of(solid, needs));
     }
 }
 
