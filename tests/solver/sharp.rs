@@ -74,40 +74,24 @@ fn what_is_sharp_harms_nothing_where_it_comes_through() {
 }
 
 #[test]
-fn balls_at_thirty_metres_a_second_are_caught_with_substeps_enough() {
+fn balls_at_thirty_metres_a_second_are_caught() {
     for radius in [0.02, 0.005] {
-        let watched = watch_outside(bullet::ball(&with_substeps(64, 16, 60), radius));
-        assert_eq!(watched.worst.fault, 0.0, "{radius} m: {watched:?}");
-        assert!(watched.worst.penetration <= 1e-3, "{radius} m: {watched:?}");
-    }
-}
-
-#[test]
-fn balls_that_come_through_harm_nothing() {
-    for radius in [0.02, 0.005] {
-        let watched = watch_outside(bullet::ball(&alone(16, 90), radius));
-        // They stretch what they hit by 41 %, for a frame.
-        assert!(watched.worst.max_strain < 1.0 && watched.end.max_strain < 0.05, "{radius} m: {watched:?}");
+        for settings in [alone(16, 60), with_substeps(64, 16, 60)] {
+            let watched = watch_outside(bullet::ball(&settings, radius));
+            assert_eq!(watched.worst.fault, 0.0, "{radius} m: {watched:?}");
+            assert!(watched.worst.penetration <= 1e-3, "{radius} m: {watched:?}");
+        }
     }
 }
 
 #[test]
 fn a_cloth_at_thirty_metres_a_second_does_not_pass_a_wall_of_four_millimetres() {
     for n in [12, 24] {
-        for settings in [alone(n, 60), with_substeps(64, n, 60)] {
+        for settings in [alone(n, 60), with_substeps(8, n, 60), with_substeps(32, n, 60), with_substeps(64, n, 60)] {
             let watched = watch_outside(bullet::wall(&settings));
             assert_eq!(watched.worst.fault, 0.0, "{n}: {watched:?}");
             assert!(watched.worst.penetration <= 1e-3, "{n}: {watched:?}");
         }
-    }
-}
-
-#[test]
-#[ignore = "with 32 substeps a particle gets to the other side, and with 8 or 64 none"]
-fn no_number_of_substeps_lets_a_particle_pass_a_wall() {
-    for (n, substeps) in [(12, 32), (24, 32)] {
-        let watched = watch_outside(bullet::wall(&with_substeps(substeps, n, 90)));
-        assert_eq!(watched.worst.fault, 0.0, "{n}, {substeps} substeps: {watched:?}");
     }
 }
 

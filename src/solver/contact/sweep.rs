@@ -88,6 +88,7 @@ impl Passage {
         const STEPS: u32 = 32;
         let (direction, length) = (to - from).normalize_and_length();
         let mut way = 0.0;
+        let mut last = None;
         for _ in 0..STEPS {
             let point = from + direction * way;
             let mut surface = self.solid.surface(point);
@@ -99,8 +100,10 @@ impl Passage {
             if way > length {
                 return None;
             }
+            last = Some((point, surface));
         }
-        None
+        // Along a surface it goes by small steps: whether it comes to be behind it is seen from there.
+        last
     }
 }
 

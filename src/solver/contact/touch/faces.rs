@@ -144,12 +144,12 @@ impl Meeting {
         let particle = self.particle as usize;
         let way @ [before, place] = [points.previous[particle], points.position[particle]];
         let mut first: Option<(f32, f32, Face)> = None;
-        let mut nearest: Option<(At, f32, Face)> = None;
+        let mut is_clear = false;
         for &corners in faces {
             let face = Face::new(corners, points);
             let outward = normal(face.now);
             let height = outward.dot(place - face.now[0]);
-            let far = self.distance * outward.length();
+            is_clear |= height > self.distance * outward.length();
             // Out of what is closed, particles may go.
             if (!self.is_closed || height < 0.0)
                 && let Some((share, side)) = face.passed(way, Self::SEAM * self.distance)
@@ -158,20 +158,12 @@ impl Meeting {
             {
                 first = Some((share, side, face));
             }
-            if height > far || !self.is_closed && height < -far {
-                continue;
-            }
-            let at = at(place, face.now, self.is_closed);
-            // Of faces that share the nearest place, the one that looks towards the particle knows the side that it is on.
-            let steep = at.normal.dot(outward).abs() / outward.length().max(f32::MIN_POSITIVE);
-            let is_nearer = nearest.is_none_or(|(best, best_steep, _)| {
-                let (length, least) = (at.gap.abs(), best.gap.abs());
-                length < least * (1.0 - 1e-5) || length <= least * (1.0 + 1e-5) && steep > best_steep
-            });
-            if is_nearer {
-                nearest = Some((at, steep, face));
-            }
         }
+        // What is in front of one face of something convex is off all of it.
+        let nearest = match first {
+            None if !(self.is_convex && is_clear) => self.nearest(faces, points),
+            _ => None,
+        };
         let (now, old_gap, face) = match (first, nearest) {
             (Some((_, side, face)), _) => {
                 let [outward, was] = [face.now, face.then].map(|corners| normal(corners).normalize_or_zero() * side);
@@ -179,7 +171,7 @@ impl Meeting {
                 let gap = outward.dot(place - face.now[0]);
                 (At { weights, normal: outward, gap }, was.dot(before - face.then[0]), face)
             }
-            (None, Some((now, _, face))) if now.gap < self.distance => {
+            (None, Some((now, face))) if now.gap < self.distance => {
                 (now, at(before, face.then, self.is_closed).gap, face)
             }
             _ => return None,
@@ -198,5 +190,25 @@ impl Meeting {
             parted: target - now.gap - gained,
             friction: self.friction,
         })
+    }
+
+    /// The face that the particle is nearest to, and how.
+    fn nearest(&self, faces: &[[u32; 3]], points: &Points) -> Option<(At, Face)> {
+        let place = points.position[self.particle as usize];
+        let mut nearest: Option<(At, f32, Face)> = None;
+        for &corners in faces {
+            let face = Face::new(corners, points);
+            let at = at(place, face.now, self.is_closed);
+            // Of faces that share the nearest place, the one that looks towards the particle knows the side that it is on.
+            let steep = at.normal.dot(normal(face.now).normalize_or_zero()).abs();
+            let is_nearer = nearest.is_none_or(|(best, best_steep, _)| {
+                let (length, least) = (at.gap.abs(), best.gap.abs());
+                length < least * (1.0 - 1e-5) || length <= least * (1.0 + 1e-5) && steep > best_steep
+            });
+            if is_nearer {
+                nearest = Some((at, steep, face));
+            }
+        }
+        nearest.map(|(at, _, face)| (at, face))
     }
 }

@@ -279,6 +279,7 @@ impl AtObstacle {
             }
             *number
         };
+        let thickness = target.radii.iter().copied().fold(0.0, f32::max).min(0.5 * surface.longest_edge);
         at_faces.clear();
         for one in &*found {
             let mut pair = one.pair;
@@ -289,7 +290,6 @@ impl AtObstacle {
                 }
                 continue;
             }
-            let thickness = target.radii.iter().copied().fold(0.0, f32::max);
             if let Shape::Solid(solid) = &obstacle.shape
                 && !pierced.contains(&(pair.points[0], one.face))
                 && depth_of(one, solid, position, at.first) > 2.0 * sink(cloth.ctx) + thickness
