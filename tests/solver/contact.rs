@@ -204,9 +204,9 @@ fn a_cloth_that_starts_deep_inside_comes_out_slowly_and_whole() {
             bed.step(1.0 / 60.0);
             frames += 1;
             // Its springs pull as well.
-            assert!(before - depth(&bed) < 2.0 / 60.0, "{method:?}, {shape:?}: {before} m to {} m", depth(&bed));
+            assert!(before - depth(&bed) < 3.0 / 60.0, "{method:?}, {shape:?}: {before} m to {} m", depth(&bed));
             // It is torn at, and what hangs out is jerked along.
-            assert!(bed.fastest() < 30.0, "{method:?}, {shape:?}: {} m/s", bed.fastest());
+            assert!(bed.fastest() < 40.0, "{method:?}, {shape:?}: {} m/s", bed.fastest());
             assert!(frames < 120, "{method:?}, {shape:?}: still {} m inside", depth(&bed));
         }
         println!("{method:?}, {shape:?}: {frames} frames for {start} m");

@@ -279,7 +279,9 @@ impl AtObstacle {
             }
             *number
         };
-        let thickness = target.radii.iter().copied().fold(0.0, f32::max).min(0.5 * surface.longest_edge);
+        // What is thinner than an edge is caught by the triangles alone, however deep they are in it.
+        let thin = target.radii.iter().copied().filter(|&radius| radius < 0.5 * surface.longest_edge);
+        let thickness = thin.fold(0.0, f32::max);
         at_faces.clear();
         for one in &*found {
             let mut pair = one.pair;
