@@ -84,7 +84,7 @@ pub struct Cloth {
     /// What of the cloth meets itself, and other cloths for which this isn't off either. Off by default, since it costs.
     pub self_collision: SelfCollision,
     /// Distance in m that parts of cloth keep from each other, greater than 0. 0.002 to 0.01. Parts that are nearer to each
-    /// other at rest stay so.
+    /// other at rest stay so. More than four edges of the mesh count as four.
     pub self_distance: f32,
     /// Coulomb friction of cloth on cloth, no unit, 0 or more. 0.1 for silk, 0.4 for wool.
     pub self_friction: f32,

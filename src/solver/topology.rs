@@ -11,6 +11,9 @@ use super::{Braid, Lattice, Level, SelfCollision, contact::surface::Surface, ord
 /// 0.71 of its side from the middle, and the mean edge, diagonals too, is 1.14 of it.
 const BALL: f32 = 0.65;
 
+/// The largest distance between parts of a cloth, as a multiple of the mean edge.
+const MOST_EDGES: f32 = 4.0;
+
 /// What a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SpringKind {
@@ -191,12 +194,15 @@ impl Topology {
     }
 
     /// Distance that parts of the cloth keep from each other, m, where that of the settings is `distance`: balls at its
-    /// particles are larger, so that nothing gets through between them.
+    /// particles are larger, so that nothing gets through between them. No distance is more than some edges long: everything
+    /// would be near everything.
     pub fn self_distance(&self, mode: SelfCollision, distance: f32) -> f32 {
-        match mode {
-            SelfCollision::Particles => distance.max(BALL * self.surface().mean_edge),
-            SelfCollision::Robust | SelfCollision::Off => distance,
-        }
+        let edge = self.surface().mean_edge;
+        let least = match mode {
+            SelfCollision::Particles => BALL * edge,
+            SelfCollision::Robust | SelfCollision::Off => 0.0,
+        };
+        distance.min(MOST_EDGES * edge).max(least)
     }
 
     /// Where the particles stand while a step runs.
