@@ -143,12 +143,13 @@ impl<'a> Plan<'a> {
         if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
             return None;
         }
-        let is_near = contact::near_obstacles(particles, ctx, dt).next().is_some();
+        let mut near = contact::near_obstacles(particles, ctx, dt).peekable();
+        let is_near = near.peek().is_some();
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
         let touches = ctx.self_collision != SelfCollision::Off;
         let is_mounted = !ctx.mounted.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
-        let for_sharp = if is_near { touch::substeps_for_sharp(particles, topology, ctx, dt) } else { 0.0 };
+        let for_sharp = touch::substeps_for_sharp(near, particles, topology, ctx, dt);
         let care = match (ctx.self_collision, with_care) {
             _ if for_sharp > 0.0 => Care::Sharp(for_sharp),
             (SelfCollision::Robust, _) => Care::Robust,

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::solver::{
     Lanes, Particles, SelfCollision, StepContext, Topology,
-    contact::{Shape, near},
+    contact::{Obstacle, Shape},
     step::Running,
 };
 
@@ -62,18 +62,23 @@ fn sink(ctx: &StepContext) -> f32 {
     ctx.margin.max(SINK).max(SINK_OF_DISTANCE * ctx.contact_distance())
 }
 
-/// Into how many substeps to cut a step of `dt` seconds so that nothing sharp goes by more than half an edge of a cloth in one
-/// of them; 0 where nothing sharp is near.
-pub fn substeps_for_sharp(particles: &Particles, topology: &Topology, ctx: &StepContext, dt: f32) -> f32 {
-    let speed = || particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
-    let near = near::near_obstacles(particles, ctx, dt);
+/// Into how many substeps to cut a step of `dt` seconds so that nothing sharp among the obstacles `near` goes by more than half an
+/// edge of a cloth in one of them; 0 where nothing sharp is.
+pub fn substeps_for_sharp<'a>(
+    near: impl Iterator<Item = &'a Obstacle>,
+    particles: &Particles,
+    topology: &Topology,
+    ctx: &StepContext,
+    dt: f32,
+) -> f32 {
     let sharp = near.filter(|obstacle| match &obstacle.shape {
         Shape::Solid(solid) => obstacle::tightness(obstacle, topology, ctx).is_pierced_by(solid),
         Shape::Mesh(_) => false,
     });
     let ways = sharp.map(|obstacle| obstacle.start.translation.distance(obstacle.end.translation));
-    let way = ways.map(|way| way + speed() * dt).fold(0.0, f32::max);
-    way / (0.5 * topology.surface().mean_edge)
+    let Some(way) = ways.reduce(f32::max) else { return 0.0 };
+    let speed = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
+    (way + speed * dt) / (0.5 * topology.surface().mean_edge)
 }
 
 /// What of a cloth matters here.
@@ -150,7 +155,7 @@ impl Touch {
     fn search(&mut self, cloths: &[Running], span: Range<f32>, dt: f32) {
         self.take_places(cloths);
         let is_known = self.is_begun && span.end <= self.searched.end && self.tangles.is_empty();
-        if is_known && !self.has_come_off(&span) && !self.has_body_come_off(cloths, span.start) {
+        if is_known && !self.has_come_off(span.start) && !self.has_body_come_off(cloths, span.start) {
             return;
         }
         self.is_begun = true;
@@ -298,18 +303,15 @@ impl Touch {
         touched
     }
 
-    /// Whether a particle was off its way when the part `span` of the step began, or is now.
-    fn has_come_off(&self, span: &Range<f32>) -> bool {
-        let Points { previous, .. } = &self.points;
-        [(span.start, previous)].into_iter().any(|(now, places)| {
-            let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
-            (0..self.slack.len()).any(|cloth| {
-                let particles = self.particles(cloth);
-                let far = self.slack[cloth] * self.slack[cloth];
-                let ways = self.start[particles.clone()].iter().zip(&self.way[particles.clone()]);
-                let mut ways = ways.zip(&places[particles]);
-                ways.any(|((&start, &way), place)| place.distance_squared(start + way * share) > far)
-            })
+    /// Whether a particle was off its way when a substep began, at the moment `now` (0..=1) of the step.
+    fn has_come_off(&self, now: f32) -> bool {
+        let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
+        (0..self.slack.len()).any(|cloth| {
+            let particles = self.particles(cloth);
+            let far = self.slack[cloth] * self.slack[cloth];
+            let ways = self.start[particles.clone()].iter().zip(&self.way[particles.clone()]);
+            let mut ways = ways.zip(&self.points.previous[particles]);
+            ways.any(|((&start, &way), place)| place.distance_squared(start + way * share) > far)
         })
     }
 }
