@@ -14,6 +14,7 @@ pub mod solid;
 mod body;
 mod closest;
 mod course;
+mod faces;
 mod inside;
 mod near;
 mod number;
@@ -27,6 +28,7 @@ pub(super) mod tangle;
 pub(super) mod touch;
 
 pub(super) use body::Bodies;
+pub(super) use faces::Faces;
 pub use mesh::MeshShape;
 pub(super) use near::{Near, near_obstacles};
 pub(super) use project::project;

@@ -12,7 +12,7 @@ use super::{
         plate::Plate,
         tether::PinPlaces,
     },
-    contact::{Bodies, Near, touch::Touch},
+    contact::{Bodies, Faces, Near, touch::Touch},
     force::wind::Air,
     lanes::Points,
     share::Bench,
@@ -51,8 +51,10 @@ pub struct Scratch {
     pub(super) mounts: Mounts,
     /// What this thread needs of its own.
     pub(super) bench: Bench,
-    /// The solids around.
+    /// The obstacles around.
     pub(super) near: Near,
+    /// The faces of each of them that is a mesh.
+    pub(super) faces: Vec<Faces>,
     /// The bodies among the obstacles.
     pub(super) bodies: Bodies,
     /// What is touched with triangles and edges: of the first of the cloths that are stepped together.

@@ -8,7 +8,7 @@ use super::{
     Lattice, LevelPass, Method, Particles, Scratch, SelfCollision, StepContext, StepReport, Topology,
     constraint::{anchor, grab, weave::Last},
     contact::{
-        self,
+        self, Faces,
         touch::{self, Touch},
     },
     effort::Care,
@@ -215,6 +215,8 @@ impl<'a> Running<'a> {
         let Loaded { is_pushed, has_moved } = load(particles, topology, ctx, h, helpers, scratch);
         grab::take_up(&mut scratch.lanes, ctx.grabs);
         scratch.near.begin();
+        scratch.faces.resize_with(ctx.obstacles.len().max(scratch.faces.len()), Faces::default);
+        scratch.faces.iter_mut().for_each(Faces::begin);
         scratch.mounts.begin(&mut scratch.lanes, topology, ctx);
         let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
         let substep = Substep {

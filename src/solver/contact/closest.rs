@@ -42,6 +42,13 @@ pub fn on_triangle(p: Vec3A, [a, b, c]: [Vec3A; 3]) -> Vec3A {
     Vec3A::new(1.0 - v - w, v, w)
 }
 
+/// The place of a triangle that is closest to `p`.
+#[inline]
+pub fn place_on_triangle(p: Vec3A, [a, b, c]: [Vec3A; 3]) -> Vec3A {
+    let weights = on_triangle(p, [a, b, c]);
+    a * weights.x + b * weights.y + c * weights.z
+}
+
 /// How far along each of the edges `[a, b]` and `[c, d]` they are closest, 0..=1. Ericson, section 5.1.9.
 #[inline]
 pub fn on_edges([a, b]: [Vec3A; 2], [c, d]: [Vec3A; 2]) -> (f32, f32) {

@@ -20,8 +20,6 @@ pub struct TriangleMesh {
     pub(super) surface: Surface,
     /// Boxes around the triangles where the points are.
     pub(super) places: Places,
-    /// Those of a closed mesh.
-    pub(super) normals: PseudoNormals,
 }
 
 /// A triangle mesh as an obstacle within one step.
@@ -43,11 +41,7 @@ impl TriangleMesh {
         sharpen(&mut surface, &points, is_closed);
         let mut places = Places::default();
         places.follow(&surface, |triangle| Bounds::around(triangle.map(|i| points[i as usize])), None::<fn(_) -> _>);
-        let mut normals = PseudoNormals::default();
-        if is_closed {
-            normals.find(&surface, &points);
-        }
-        Self { points, is_closed, surface, places, normals }
+        Self { points, is_closed, surface, places }
     }
 
     /// Corners of each triangle.
@@ -118,35 +112,4 @@ fn sharpen(surface: &mut Surface, points: &[Vec3A], is_closed: bool) {
         })
         .collect();
     surface.blunt(&sharp);
-}
-
-/// Normals of points and edges for the question of which side of a closed mesh a place is on: that of the closest
-/// feature tells (Bærentzen and Aanæs, "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct PseudoNormals {
-    of_points: Vec<Vec3A>,
-}
-
-impl PseudoNormals {
-    /// Those of a mesh whose points are at `points`.
-    pub fn find(&mut self, surface: &Surface, points: &[Vec3A]) {
-        self.of_points.clear();
-        self.of_points.resize(points.len(), Vec3A::ZERO);
-        for &triangle in &surface.triangles {
-            let [a, b, c] = triangle.map(|i| points[i as usize]);
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            for (i, [p, q, r]) in [[a, b, c], [b, c, a], [c, a, b]].into_iter().enumerate() {
-                self.of_points[triangle[i] as usize] += normal * (q - p).angle_between(r - p);
-            }
-        }
-    }
-
-    /// The normal at the place of `weights` in a triangle: its own inside of it, else blended from the corners' there.
-    pub fn at(&self, triangle: [u32; 3], normal: Vec3A, weights: [f32; 3]) -> Vec3A {
-        if weights.iter().all(|&weight| weight > 0.0) {
-            return normal;
-        }
-        let corners = triangle.map(|i| self.of_points[i as usize].normalize_or_zero());
-        corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
-    }
 }

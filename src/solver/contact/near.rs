@@ -1,7 +1,7 @@
-//! Which solids a cloth may touch, and with which of its particles.
+//! Which obstacles a cloth may touch, and with which of its particles.
 //!
 //! Particles stand in stretches of some blocks, patches of a lattice. Of each stretch it is known how far it was from each
-//! solid at some moment; until it has come that far since, none of its particles can touch it.
+//! obstacle at some moment; until it has come that far since, none of its particles can touch it.
 
 use core::ops::Range;
 
@@ -21,12 +21,12 @@ pub(super) const STRETCH: usize = 8;
 /// The way that a cloth may gain on an obstacle within a step by what pulls and pushes at it, m.
 const GAINED: f32 = 0.01;
 
-/// What is known of the solids around a cloth.
+/// What is known of the obstacles around a cloth.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Near {
     /// Those that may be touched.
-    pub(super) solids: Vec<NearSolid>,
-    /// Stretches that may touch them, solid after solid.
+    pub(super) obstacles: Vec<NearObstacle>,
+    /// Stretches that may touch them, obstacle after obstacle.
     reachable: Vec<Reachable>,
     /// Where the particles were when that was found, m.
     start: Vec<Block>,
@@ -38,9 +38,9 @@ pub(in crate::solver) struct Near {
     known: f32,
 }
 
-/// A solid that may be touched.
+/// An obstacle that may be touched.
 #[derive(Clone, Debug)]
-pub(super) struct NearSolid {
+pub(super) struct NearObstacle {
     /// Its number among the obstacles.
     pub obstacle: usize,
     /// Where it was when the particles were at their start.
@@ -53,7 +53,7 @@ pub(super) struct NearSolid {
     reachable: Range<usize>,
 }
 
-/// A stretch that may touch a solid.
+/// A stretch that may touch an obstacle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reachable {
     pub stretch: usize,
@@ -113,15 +113,34 @@ impl Obstacle {
     /// Centre and radius of a ball around it at the start of the step, m, that holds it as well however it turns. None where
     /// there is none, or nobody knows.
     pub(super) fn ball(&self) -> Option<(Vec3A, f32)> {
-        let radius = match &self.shape {
-            Shape::Solid(solid) => solid.reach(),
-            Shape::Mesh(MeshShape { mesh, deformed: None }) => {
+        let radius = self.shape.reach();
+        radius.is_finite().then_some((self.start.translation, radius))
+    }
+}
+
+impl Shape {
+    /// Radius of a ball around the origin that holds all of it, m. Infinite where there is none, or nobody knows.
+    fn reach(&self) -> f32 {
+        match self {
+            Self::Solid(solid) => solid.reach(),
+            Self::Mesh(MeshShape { mesh, deformed: None }) => {
                 let [low, high] = mesh.bounds();
                 low.abs().max(high.abs()).length()
             }
-            Shape::Mesh(_) => return None,
-        };
-        radius.is_finite().then_some((self.start.translation, radius))
+            Self::Mesh(_) => f32::INFINITY,
+        }
+    }
+
+    /// Distance of a place in its own frame that it has at least, m; negative inside.
+    fn distance(&self, place: Vec3A) -> f32 {
+        match self {
+            Self::Solid(solid) => solid.surface(place).distance,
+            Self::Mesh(MeshShape { mesh, deformed: None }) => {
+                let [low, high] = mesh.bounds();
+                place.distance(place.clamp(low, high))
+            }
+            Self::Mesh(_) => f32::NEG_INFINITY,
+        }
     }
 }
 
@@ -155,13 +174,13 @@ impl Near {
         self.find(&run, ctx, span, bodies, instructions);
     }
 
-    /// How far any particle has come, and any solid off its path, m.
+    /// How far any particle has come, and any obstacle off its path, m.
     fn farthest(&self, bodies: &Bodies) -> f32 {
-        let of_solids = self.solids.iter().map(|solid| {
-            let stray = bodies.strays[solid.obstacle];
-            stray.shift.distance(solid.stray.shift) + sweep::turn_between(stray.turn, solid.stray.turn, solid.far)
+        let of_obstacles = self.obstacles.iter().map(|near| {
+            let stray = bodies.strays[near.obstacle];
+            stray.shift.distance(near.stray.shift) + sweep::turn_between(stray.turn, near.stray.turn, near.far)
         });
-        self.moved.iter().copied().chain(of_solids).fold(0.0, f32::max)
+        self.moved.iter().copied().chain(of_obstacles).fold(0.0, f32::max)
     }
 
     fn measure(&mut self, run: &Run, instructions: Instructions) {
@@ -169,9 +188,9 @@ impl Near {
         dispatch!(instructions.level(), simd => measure(simd, moved, start, run));
     }
 
-    /// Finds the solids and stretches that may touch each other in what is left of the step, from `span` on.
+    /// Finds the obstacles and stretches that may touch each other in what is left of the step, from `span` on.
     fn find(&mut self, run: &Run, ctx: &StepContext, span: Range<f32>, bodies: &Bodies, instructions: Instructions) {
-        let Self { solids, reachable, start, balls, moved, .. } = self;
+        let Self { obstacles, reachable, start, balls, moved, .. } = self;
         balls.resize(moved.len(), Ball { centre: Vec3A::ZERO, radius: 0.0 });
         dispatch!(instructions.level(), simd => enclose(simd, balls, start, run));
         let some = balls.iter().filter(|ball| ball.radius >= 0.0);
@@ -184,11 +203,10 @@ impl Near {
         let ways = ctx.obstacles.iter().map(|o| o.start.translation.distance(o.end.translation));
         known += ways.fold(0.0, f32::max);
         self.known = known;
-        solids.clear();
+        obstacles.clear();
         reachable.clear();
-        solids.reserve(ctx.obstacles.len());
+        obstacles.reserve(ctx.obstacles.len());
         for (obstacle, it) in ctx.obstacles.iter().enumerate() {
-            let Shape::Solid(solid) = it.shape else { continue };
             let distance = ctx.contact_distance() + it.rounding;
             let (path, [pose, _]) = (it.pose(span.start), bodies.poses(ctx, obstacle, span.clone()));
             let far = pose.translation.distance(cloth.centre) + cloth.radius + known;
@@ -196,7 +214,7 @@ impl Near {
             let off = if it.body.is_some() { known } else { 0.0 };
             // A ball around it holds it however it turns.
             let shift = path.translation.distance(it.end.translation) + off;
-            let radius = solid.reach() + distance + shift;
+            let radius = it.shape.reach() + distance + shift;
             let gap = |ball: &Ball| pose.translation.distance(ball.centre) - ball.radius - radius;
             if gap(&cloth) > known {
                 continue;
@@ -210,21 +228,21 @@ impl Near {
                 if ball.radius < 0.0 || gap(ball) > known {
                     continue;
                 }
-                let clearance = solid.surface(to_local.transform_point(ball.centre)).distance - ball.radius - distance;
+                let clearance = it.shape.distance(to_local.transform_point(ball.centre)) - ball.radius - distance;
                 if clearance - way <= known {
                     reachable.push(Reachable { stretch, clearance });
                 }
             }
             if reachable.len() > first {
                 let stray = bodies.strays[obstacle];
-                solids.push(NearSolid { obstacle, pose, stray, far, reachable: first..reachable.len() });
+                obstacles.push(NearObstacle { obstacle, pose, stray, far, reachable: first..reachable.len() });
             }
         }
     }
 
-    /// The stretches that a solid may touch.
+    /// The stretches that an obstacle may touch.
     pub(super) fn stretches(&mut self, number: usize) -> Stretches<'_> {
-        let NearSolid { far, reachable, pose, .. } = &self.solids[number];
+        let NearObstacle { far, reachable, pose, .. } = &self.obstacles[number];
         Stretches {
             reachable: &self.reachable[reachable.clone()],
             moved: &mut self.moved,

@@ -1,4 +1,4 @@
-//! Particles out of solids, eight at a time.
+//! Particles out of obstacles, eight at a time.
 
 use core::ops::Range;
 
@@ -6,10 +6,9 @@ use bevy::math::{Isometry3d, Quat, Vec3A};
 use fearless_simd::{dispatch, f32x8, mask32x8, prelude::*};
 
 use super::{
-    Bodies, Shape, Solid,
+    Bodies, Shape, Solid, faces,
     course::{Course, Moving, Shifted, Turned},
     near::{Reachable, STRETCH},
-    solid::Field,
     sweep::{self, Passage},
 };
 use crate::solver::{
@@ -19,31 +18,48 @@ use crate::solver::{
 };
 
 mod push;
+mod sight;
 
 use push::{Hold, Movable, Still};
+pub(super) use sight::Sight;
+use sight::Whole;
 
-/// Projects all free particles out of all solids within the part `span` (0..=1) of the step, a substep of `h` seconds.
+/// Projects all free particles out of all obstacles within the part `span` (0..=1) of the step, a substep of `h` seconds.
 /// Returns the number of contacts.
 pub(in crate::solver) fn project(scratch: &mut Scratch, ctx: &StepContext, span: Range<f32>, h: f32) -> u32 {
-    let Scratch { lanes, near, bodies, instructions, .. } = scratch;
+    let Scratch { lanes, near, faces: known, bodies, instructions, .. } = scratch;
     near.follow(lanes, ctx, span.clone(), bodies, *instructions);
     let mut run = lanes.whole();
     let mut contacts = 0;
-    for number in 0..near.solids.len() {
-        let obstacle = near.solids[number].obstacle;
-        let Shape::Solid(solid) = ctx.obstacles[obstacle].shape else { continue };
-        let poses = bodies.poses(ctx, obstacle, span.clone());
-        let passage = Passage::new(solid, &ctx.obstacles[obstacle], poses, ctx, h);
+    for number in 0..near.obstacles.len() {
+        let obstacle = near.obstacles[number].obstacle;
+        let it = &ctx.obstacles[obstacle];
+        let poses @ [start, end] = bodies.poses(ctx, obstacle, span.clone());
+        let passage = Passage::new(it, poses, ctx, h);
         let stretches = near.stretches(number);
         let mut past = Past { passage, obstacle, bodies, run: &mut run, stretches, instructions: *instructions };
-        contacts += match past.passage.solid {
-            Solid::Sphere(field) => past.go(&field),
-            Solid::Cuboid(field) => past.go(&field),
-            Solid::Capsule(field) => past.go(&field),
-            Solid::TaperedCapsule(field) => past.go(&field),
-            Solid::Cylinder(field) => past.go(&field),
-            Solid::Cone(field) => past.go(&field),
-            Solid::HalfSpace(field) => past.go(&field),
+        contacts += match &it.shape {
+            Shape::Solid(solid) => {
+                let mut solid = *solid;
+                if start == end && it.body.is_none() {
+                    (past.passage, solid) = passage.unturned(solid);
+                }
+                match solid {
+                    Solid::Sphere(field) => past.go(&mut Whole(field)),
+                    Solid::Cuboid(field) => past.go(&mut Whole(field)),
+                    Solid::Capsule(field) => past.go(&mut Whole(field)),
+                    Solid::TaperedCapsule(field) => past.go(&mut Whole(field)),
+                    Solid::Cylinder(field) => past.go(&mut Whole(field)),
+                    Solid::Cone(field) => past.go(&mut Whole(field)),
+                    Solid::HalfSpace(field) => past.go(&mut Whole(field)),
+                }
+            }
+            Shape::Mesh(mesh) => {
+                past.passage.distance = passage.distance.max(faces::LEAST + it.rounding);
+                let (moving, passage) = ((&*past.bodies, obstacle), past.passage);
+                let mut sight = known[obstacle].sight(mesh, ctx, moving, &passage, span.clone(), past.run.position.len());
+                past.go(&mut sight)
+            }
         };
     }
     contacts
@@ -95,21 +111,21 @@ struct Touching<S: Simd> {
 }
 
 impl Past<'_, '_> {
-    fn go(&mut self, field: &impl Field) -> u32 {
+    fn go(&mut self, sight: &mut impl Sight) -> u32 {
         let level = self.instructions.level();
         if self.bodies.get(self.obstacle).is_some() {
-            dispatch!(level, simd => self.pass::<_, Moving<_>, Movable>(simd, field))
+            dispatch!(level, simd => self.pass::<_, Moving<_>, Movable, _>(simd, sight))
         } else if self.passage.moves() {
-            dispatch!(level, simd => self.pass::<_, Moving<_>, Still>(simd, field))
+            dispatch!(level, simd => self.pass::<_, Moving<_>, Still, _>(simd, sight))
         } else if self.passage.end.rotation == Quat::IDENTITY {
-            dispatch!(level, simd => self.pass::<_, Shifted<_>, Still>(simd, field))
+            dispatch!(level, simd => self.pass::<_, Shifted<_>, Still, _>(simd, sight))
         } else {
-            dispatch!(level, simd => self.pass::<_, Turned<_>, Still>(simd, field))
+            dispatch!(level, simd => self.pass::<_, Turned<_>, Still, _>(simd, sight))
         }
     }
 
     #[inline(always)]
-    fn pass<S: Simd, C: Course<S>, H: Hold>(&mut self, simd: S, field: &impl Field) -> u32 {
+    fn pass<S: Simd, C: Course<S>, H: Hold, V: Sight>(&mut self, simd: S, sight: &mut V) -> u32 {
         let mut course = C::new(simd, &self.passage);
         let zero = f32x8::splat(simd, 0.0);
         let (mut way, mut drift) = self.ways();
@@ -122,29 +138,39 @@ impl Past<'_, '_> {
             let mut farthest = zero;
             let first = reachable.stretch * STRETCH;
             for block in first..(first + STRETCH).min(self.run.position.len()) {
-                let Some(touching) = self.meet(simd, field, &course, drift, block) else { continue };
-                let Touching { touches, mut swept, .. } = touching;
-                let known = contacts;
-                if touches.any_true() {
-                    let (now, left) = H::resolve(simd, &touching, self.passage.friction, self.bodies, self.obstacle);
-                    now.store(&mut self.run.position[block]);
-                    left.store(&mut self.run.previous[block]);
-                    let off = now - Vec3x8::load(simd, &self.stretches.start[block]);
-                    farthest = farthest.max(touches.select(off.dot(off), zero));
-                    contacts += touches.to_bitmask().count_ones();
+                let local = course.to_local(Vec3x8::load(simd, &self.run.position[block]));
+                if !sight.turn_to(simd, block, self.run, local) {
+                    continue;
                 }
-                while swept != 0 {
-                    let i = swept.trailing_zeros() as usize;
-                    swept &= swept - 1;
-                    if let Some(off) = self.sweep(block, i) {
-                        moved = moved.max(off);
-                        contacts += 1;
+                for _ in 0..V::PASSES {
+                    let Some(touching) = self.meet(simd, sight, &course, drift, block) else { break };
+                    let Touching { touches, mut swept, .. } = touching;
+                    let known = contacts;
+                    if touches.any_true() {
+                        let (now, left) =
+                            H::resolve(simd, &touching, self.passage.friction, self.bodies, self.obstacle);
+                        now.store(&mut self.run.position[block]);
+                        left.store(&mut self.run.previous[block]);
+                        let off = now - Vec3x8::load(simd, &self.stretches.start[block]);
+                        farthest = farthest.max(touches.select(off.dot(off), zero));
+                        contacts += touches.to_bitmask().count_ones();
                     }
-                }
-                if H::MOVES && contacts > known {
-                    self.follow_body();
-                    course = C::new(simd, &self.passage);
-                    (way, drift) = self.ways();
+                    while swept != 0 {
+                        let i = swept.trailing_zeros() as usize;
+                        swept &= swept - 1;
+                        if let Some(off) = self.sweep(sight, block, i) {
+                            moved = moved.max(off);
+                            contacts += 1;
+                        }
+                    }
+                    if contacts == known {
+                        break;
+                    }
+                    if H::MOVES {
+                        self.follow_body();
+                        course = C::new(simd, &self.passage);
+                        (way, drift) = self.ways();
+                    }
                 }
             }
             self.stretches.moved[reachable.stretch] = farthest.reduce_max().sqrt().max(moved);
@@ -174,7 +200,7 @@ impl Past<'_, '_> {
     fn meet<S: Simd, C: Course<S>>(
         &self,
         simd: S,
-        field: &impl Field,
+        sight: &impl Sight,
         course: &C,
         drift: f32,
         block: usize,
@@ -185,7 +211,7 @@ impl Past<'_, '_> {
         let before = Vec3x8::load(simd, &self.run.previous[block]);
         let inverse_mass = lane(simd, &self.run.inverse_mass[block]);
         let local = course.to_local(place);
-        let after = field.seen(local);
+        let after = sight.seen(simd, local);
         // A particle that is farther away than it can have come this substep is left alone.
         let (depth, way) = (-after.distance + distance, place - before);
         let beyond = (-depth - drift).max(zero);
@@ -193,7 +219,7 @@ impl Past<'_, '_> {
         if is_near.all_false() {
             return None;
         }
-        let old = field.seen(course.start_to_local(before));
+        let old = sight.seen_before(simd, course.start_to_local(before));
         let sees_the_same = old.normal.dot(after.normal).simd_gt(zero);
         // What leaves by itself needs that much less of a push, and none that makes it too fast.
         let (was_inside, is_inside) = ((-old.distance + distance).max(zero), depth.max(zero));
@@ -202,7 +228,7 @@ impl Past<'_, '_> {
         let most = f32x8::splat(simd, parting);
         let is_deep = was_inside.simd_gt(most);
         let normal = course.turned(after.normal);
-        let way = course.past(way, local + after.normal * depth);
+        let way = course.past(way, local + after.normal * depth) - course.turned(sight.own_way(simd, local));
         Some(Touching {
             place,
             before,
@@ -221,10 +247,10 @@ impl Past<'_, '_> {
     /// then from where its stretch was, m, if it was.
     #[cold]
     #[inline(never)]
-    fn sweep(&mut self, block: usize, i: usize) -> Option<f32> {
+    fn sweep(&mut self, sight: &impl Sight, block: usize, i: usize) -> Option<f32> {
         let get = |[x, y, z]: &Block| Vec3A::new(x[i], y[i], z[i]);
         let (mut position, mut previous) = (get(&self.run.position[block]), get(&self.run.previous[block]));
-        let correction = self.passage.correction(position, previous)?;
+        let correction = sight.correction(i, &self.passage, position, previous)?;
         let inverse_mass = self.run.inverse_mass[block][i];
         let friction = self.passage.friction;
         push::one(&correction, [&mut position, &mut previous], inverse_mass, friction, self.bodies, self.obstacle);

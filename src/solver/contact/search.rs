@@ -100,18 +100,8 @@ pub struct Found {
     pub is_first_of_a: bool,
     /// Triangle of the second feature, of a point and a face.
     pub face: usize,
-    /// How far apart the features are, m, and where.
-    pub length: f32,
+    /// How far apart the features are, and where.
     pub nearest: Nearest,
-    /// How far they may come nearer to each other, m.
-    pub approach: f32,
-}
-
-impl Found {
-    /// Whether it is a particle of the first side and a face of the other.
-    pub fn is_of_face(&self) -> bool {
-        self.pair.features == Features::PointFace && self.is_first_of_a
-    }
 }
 
 /// Shows the pairs of features of triangle `s` of `a` and triangle `t` of `b` that may touch.
@@ -161,23 +151,6 @@ pub fn pairs_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Rea
     }
 }
 
-/// Shows the pairs of a point that belongs to leaf `p` of `a` and a face in leaf `q` of `b` that may touch.
-pub fn points_at_faces((a, p): (&Side, u32), (b, q): (&Side, u32), reach: &Reach, mut found: impl FnMut(Found)) {
-    for &point in a.surface.points_of_leaf(p) {
-        let way = a.way_of(point).grown(reach.distance + reach.slack);
-        if !way.meets(&b.places.of_nodes[q as usize]) {
-            continue;
-        }
-        for face in b.surface.of_leaf(q) {
-            if way.meets(&b.places.of_triangles[face]) {
-                let [u, v, w] = b.surface.triangles[face];
-                let shown = |one| found(Found { face, ..one });
-                found_between(Features::PointFace, [a, b, b, b], [point, u, v, w], reach, shown);
-            }
-        }
-    }
-}
-
 /// Corners of triangle `t` of `b` that have come through triangle `s` of `a`: a sharp edge pierces it, and that end of it is
 /// the nearer one to go back.
 pub fn tips_through((a, s): (&Side, usize), (b, t): (&Side, usize)) -> impl Iterator<Item = u32> {
@@ -210,7 +183,7 @@ pub fn back_through((a, s): (&Side, usize), (b, tip): (&Side, u32), reach: &Reac
         gap: -length,
         normal,
     };
-    Found { pair, is_first_of_a: false, face: s, length, nearest, approach: 0.0 }
+    Found { pair, is_first_of_a: false, face: s, nearest }
 }
 
 /// Shows the pairs of points of leaf `p` of `a` and leaf `q` of `b` that may touch as balls.
@@ -284,5 +257,5 @@ fn found_between(features: Features, sides: [&Side; 4], points: [u32; 4], reach:
     let normal = if length > 0.0 { direction } else { Vec3A::Y };
     let points = [s0.first + p0, s1.first + p1, s2.first + p2, s3.first + p3];
     let pair = Pair { features, points, distance, taper, friction: reach.friction, gap: length, normal };
-    found(Found { pair, is_first_of_a: true, face: 0, length, nearest, approach });
+    found(Found { pair, is_first_of_a: true, face: 0, nearest });
 }

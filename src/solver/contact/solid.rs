@@ -60,11 +60,17 @@ pub struct Surface {
     pub normal: Vec3A,
 }
 
+impl From<Seen<f32>> for Surface {
+    fn from(Seen { distance, normal }: Seen<f32>) -> Self {
+        Self { distance, normal: normal.into() }
+    }
+}
+
 impl Solid {
     /// The surface as seen from `point` (m, in the solid's own frame).
     pub fn surface(&self, point: Vec3A) -> Surface {
         let point = point.into();
-        let Seen { distance, normal } = match self {
+        Surface::from(match self {
             Self::Sphere(sphere) => sphere.seen(point),
             Self::Cuboid(cuboid) => cuboid.seen(point),
             Self::Capsule(capsule) => capsule.seen(point),
@@ -72,8 +78,7 @@ impl Solid {
             Self::Cylinder(cylinder) => cylinder.seen(point),
             Self::Cone(cone) => cone.seen(point),
             Self::HalfSpace(plane) => plane.seen(point),
-        };
-        Surface { distance, normal: normal.into() }
+        })
     }
 
     /// Radius of a ball around the origin that holds all of it, m. Infinite for a half-space.

@@ -7,10 +7,13 @@
 
 use core::ops::Range;
 
-use bevy::{
-    math::{Vec3, Vec3A},
-    platform::collections::HashSet,
-};
+use bevy::{math::Vec3, platform::collections::HashSet};
+
+mod places;
+mod walk;
+
+pub use places::{Bounds, Places};
+pub use walk::Walk;
 
 /// Triangles to a leaf, about.
 const LEAF: usize = 4;
@@ -158,6 +161,11 @@ impl Surface {
         2 * self.leaves
     }
 
+    /// Whether it has a corner or edge that is sharper than this.
+    pub fn has_sharper_than(&self, sharpness: f32) -> bool {
+        self.sharpest.get(1).is_some_and(|&sharpest| sharpest > sharpness)
+    }
+
     /// Whether a node is a leaf.
     pub fn is_leaf(&self, node: u32) -> bool {
         node as usize >= self.leaves
@@ -205,213 +213,4 @@ fn sort(triangles: &mut [[u32; 3]], leaves: usize, middle: &impl Fn(&[u32; 3]) -
     }
     let count = triangles.len();
     halve(triangles, 0..leaves, &|leaf| leaf * count / leaves, middle);
-}
-
-/// A box along the axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    pub low: Vec3A,
-    pub high: Vec3A,
-}
-
-impl Bounds {
-    /// Around nothing.
-    pub const NOTHING: Self = Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
-
-    /// Around these points.
-    #[inline]
-    pub fn around(points: impl IntoIterator<Item = Vec3A>) -> Self {
-        points.into_iter().fold(Self::NOTHING, |Self { low, high }, p| Self { low: low.min(p), high: high.max(p) })
-    }
-
-    /// Around both.
-    #[inline]
-    pub fn union(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
-    }
-
-    /// Larger by `margin` (m) on all sides.
-    #[inline]
-    pub fn grown(self, margin: f32) -> Self {
-        Self { low: self.low - margin, high: self.high + margin }
-    }
-
-    /// Whether the two share a place.
-    #[inline]
-    pub fn meets(&self, other: &Self) -> bool {
-        (self.low.cmple(other.high) & other.low.cmple(self.high)).all()
-    }
-}
-
-/// The directions that patches may face, one a bit: to the sides, edges and corners of a cube.
-const DIRECTIONS: [[f32; 3]; 13] = {
-    const E: f32 = core::f32::consts::FRAC_1_SQRT_2;
-    const C: f32 = 0.577_350_3;
-    [
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, 0.0, 1.0],
-        [E, E, 0.0],
-        [E, -E, 0.0],
-        [E, 0.0, E],
-        [E, 0.0, -E],
-        [0.0, E, E],
-        [0.0, E, -E],
-        [C, C, C],
-        [C, C, -C],
-        [C, -C, C],
-        [C, -C, -C],
-    ]
-};
-
-/// Cosine of the largest angle between a patch's normals and the direction that it is said to face: a patch that
-/// is no steeper has room to fold before it touches itself.
-const FACING: f32 = 0.5;
-
-/// The directions that a normal of any length faces.
-fn facing(normal: Vec3A) -> u32 {
-    let least = FACING * normal.length();
-    let mut bits = 0;
-    for (i, direction) in DIRECTIONS.iter().enumerate() {
-        let along = normal.dot(Vec3A::from_array(*direction));
-        bits |= u32::from(along > least) << (2 * i) | u32::from(-along > least) << (2 * i + 1);
-    }
-    bits
-}
-
-/// Where the triangles of a surface are, and its patches.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Places {
-    /// Box around each triangle.
-    pub of_triangles: Vec<Bounds>,
-    /// Box around each node; of the first, which isn't used, nothing.
-    pub of_nodes: Vec<Bounds>,
-    /// Directions that all triangles of each node face.
-    pub facing: Vec<u32>,
-}
-
-impl Places {
-    /// Follows the surface, whose triangles are in `bounds` of their number. `corners` tells where a triangle's corners
-    /// are, if it matters which way patches face.
-    pub fn follow(
-        &mut self,
-        surface: &Surface,
-        bounds: impl Fn([u32; 3]) -> Bounds,
-        corners: Option<impl Fn([u32; 3]) -> [Vec3A; 3]>,
-    ) {
-        self.of_triangles.clear();
-        self.of_triangles.extend(surface.triangles.iter().map(|&triangle| bounds(triangle)));
-        self.of_nodes.clear();
-        self.of_nodes.resize(surface.node_count(), Bounds::NOTHING);
-        self.facing.clear();
-        self.facing.resize(surface.node_count(), u32::MAX);
-        for node in surface.leaves..2 * surface.leaves {
-            let some = surface.of_leaf(node as u32);
-            self.of_nodes[node] = self.of_triangles[some.clone()].iter().copied().fold(Bounds::NOTHING, Bounds::union);
-            if let Some(corners) = &corners {
-                let normal = |triangle: &[u32; 3]| {
-                    let [a, b, c] = corners(*triangle);
-                    (b - a).cross(c - a)
-                };
-                let directions = surface.triangles[some].iter().map(|triangle| facing(normal(triangle)));
-                self.facing[node] = directions.fold(u32::MAX, |all, one| all & one);
-            }
-        }
-        for node in (1..surface.leaves).rev() {
-            self.of_nodes[node] = self.of_nodes[2 * node].union(self.of_nodes[2 * node + 1]);
-            self.facing[node] = self.facing[2 * node] & self.facing[2 * node + 1];
-        }
-    }
-
-    /// Box around all.
-    pub fn whole(&self) -> Bounds {
-        self.of_nodes.get(1).copied().unwrap_or(Bounds::NOTHING)
-    }
-}
-
-/// Pairs of leaves, and leaves, whose boxes meet.
-#[derive(Clone, Debug, Default)]
-pub struct Walk {
-    left: Vec<(u32, u32)>,
-    folded: Vec<u32>,
-}
-
-impl Walk {
-    /// Visits the pairs of leaves of two surfaces whose boxes meet.
-    pub fn between(
-        &mut self,
-        (a, at): (&Surface, &Places),
-        (b, bt): (&Surface, &Places),
-        mut visit: impl FnMut(u32, u32),
-    ) {
-        self.left.clear();
-        self.left.push((1, 1));
-        self.down((a, at), (b, bt), None, &mut visit);
-    }
-
-    /// Visits those of them that the other surface has something sharper than `sharpness` in.
-    pub fn between_sharp(
-        &mut self,
-        (a, at): (&Surface, &Places),
-        (b, bt): (&Surface, &Places),
-        sharpness: f32,
-        mut visit: impl FnMut(u32, u32),
-    ) {
-        self.left.clear();
-        self.left.push((1, 1));
-        self.down((a, at), (b, bt), Some(sharpness), &mut visit);
-    }
-
-    /// Visits the pairs of leaves of one surface that may touch each other, and leaves that may touch themselves as a pair
-    /// of the same. Patches that face one way are left out.
-    pub fn within(&mut self, surface: &Surface, places: &Places, mut visit: impl FnMut(u32, u32)) {
-        self.folded.clear();
-        self.folded.push(1);
-        while let Some(node) = self.folded.pop() {
-            if places.facing[node as usize] != 0 {
-                continue;
-            }
-            if surface.is_leaf(node) {
-                visit(node, node);
-                continue;
-            }
-            let (first, other) = (2 * node, 2 * node + 1);
-            self.left.clear();
-            self.left.push((first, other));
-            // Two that share a corner and face one way are a patch too.
-            let mut visit_folded = |p: u32, q: u32| {
-                if places.facing[p as usize] & places.facing[q as usize] == 0 || !surface.are_beside(p, q) {
-                    visit(p, q);
-                }
-            };
-            self.down((surface, places), (surface, places), None, &mut visit_folded);
-            self.folded.extend([other, first]);
-        }
-    }
-
-    /// Visits the pairs of leaves below what is left whose boxes meet.
-    fn down(
-        &mut self,
-        (a, at): (&Surface, &Places),
-        (b, bt): (&Surface, &Places),
-        sharper_than: Option<f32>,
-        visit: &mut impl FnMut(u32, u32),
-    ) {
-        while let Some((p, q)) = self.left.pop() {
-            if sharper_than.is_some_and(|least| b.sharpest[q as usize] <= least) {
-                continue;
-            }
-            if !at.of_nodes[p as usize].meets(&bt.of_nodes[q as usize]) {
-                continue;
-            }
-            match (a.is_leaf(p), b.is_leaf(q)) {
-                (true, true) => visit(p, q),
-                (false, true) => self.left.extend([(2 * p + 1, q), (2 * p, q)]),
-                (true, false) => self.left.extend([(p, 2 * q + 1), (p, 2 * q)]),
-                (false, false) => {
-                    self.left.extend([(2 * p + 1, 2 * q + 1), (2 * p + 1, 2 * q), (2 * p, 2 * q + 1), (2 * p, 2 * q)])
-                }
-            }
-        }
-    }
 }

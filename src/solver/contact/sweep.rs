@@ -2,14 +2,12 @@
 
 use bevy::math::{Isometry3d, Quat, Vec3A, primitives::InfinitePlane3d};
 
-use super::{Obstacle, Solid, Surface};
+use super::{Obstacle, Solid, Surface, solid::Field};
 use crate::solver::StepContext;
 
 /// An obstacle within one substep.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Passage {
-    /// Its shape.
-    pub solid: Solid,
     /// Pose at the start of the substep.
     pub start: Isometry3d,
     /// Pose at its end.
@@ -38,23 +36,22 @@ pub(super) struct Correction {
 }
 
 impl Passage {
-    /// That of `obstacle`, a `solid` which goes from one pose to the other within a substep of `h` seconds.
-    pub fn new(solid: Solid, obstacle: &Obstacle, [start, end]: [Isometry3d; 2], ctx: &StepContext, h: f32) -> Self {
+    /// That of `obstacle`, which goes from one pose to the other within a substep of `h` seconds.
+    pub fn new(obstacle: &Obstacle, [start, end]: [Isometry3d; 2], ctx: &StepContext, h: f32) -> Self {
         let distance = ctx.contact_distance() + obstacle.rounding;
         let friction = ctx.material.friction * obstacle.friction;
-        let passage = Self { solid, start, end, distance, friction, parting: ctx.max_depenetration_velocity * h };
-        if start == end && obstacle.body.is_none() { passage.unturned() } else { passage }
+        Self { start, end, distance, friction, parting: ctx.max_depenetration_velocity * h }
     }
 
-    /// What stays, without a rotation where it needs none.
-    fn unturned(mut self) -> Self {
-        let solid = match self.solid {
-            Solid::Sphere(_) => self.solid,
+    /// What stays, without a rotation where its `solid` needs none.
+    pub fn unturned(self, solid: Solid) -> (Self, Solid) {
+        let unturned = match solid {
+            Solid::Sphere(_) => solid,
             Solid::HalfSpace(plane) => Solid::HalfSpace(InfinitePlane3d { normal: self.end.rotation * plane.normal }),
-            _ => return self,
+            _ => return (self, solid),
         };
-        (self.start.rotation, self.end.rotation) = (Quat::IDENTITY, Quat::IDENTITY);
-        Self { solid, ..self }
+        let [start, end] = [self.start, self.end].map(|pose| Isometry3d { rotation: Quat::IDENTITY, ..pose });
+        (Self { start, end, ..self }, unturned)
     }
 
     /// Whether it goes anywhere.
@@ -62,13 +59,11 @@ impl Passage {
         self.start != self.end
     }
 
-    /// The correction of a particle that went from `previous` to `position` and sees another side of the shape than
-    /// before: it came through something thin or sharp, or went by. Seen from the new side, it would be left on the wrong
-    /// one: the way in decides.
-    pub fn correction(&self, position: Vec3A, previous: Vec3A) -> Option<Correction> {
+    /// The correction of a particle that went from `previous` to `position` past a solid: the way in decides.
+    pub fn correction(&self, solid: &impl Field, position: Vec3A, previous: Vec3A) -> Option<Correction> {
         let to = self.end.inverse().transform_point(position);
         let from = self.start.inverse().transform_point(previous);
-        let (entry, surface) = self.enter(from, to)?;
+        let (entry, surface) = self.enter(solid, from, to)?;
         let gained = surface.normal.dot(entry - to);
         let was_inside = (-surface.distance).max(0.0);
         let parted = was_inside.min(self.parting) + gained.min(0.0);
@@ -82,8 +77,8 @@ impl Passage {
         Some(Correction { normal, gained: gained.max(0.0), parted: parted.max(0.0), held_back, surface_way })
     }
 
-    /// Where the straight way from `from` to `to` enters the shape, and the surface there. Sphere tracing (Hart 1996).
-    fn enter(&self, from: Vec3A, to: Vec3A) -> Option<(Vec3A, Surface)> {
+    /// Where the straight way from `from` to `to` enters a solid, and the surface there. Sphere tracing (Hart 1996).
+    fn enter(&self, solid: &impl Field, from: Vec3A, to: Vec3A) -> Option<(Vec3A, Surface)> {
         const CLOSE: f32 = 1e-5;
         const STEPS: u32 = 32;
         let (direction, length) = (to - from).normalize_and_length();
@@ -91,7 +86,7 @@ impl Passage {
         let mut last = None;
         for _ in 0..STEPS {
             let point = from + direction * way;
-            let mut surface = self.solid.surface(point);
+            let mut surface = Surface::from(solid.seen(point.into()));
             surface.distance -= self.distance;
             if surface.distance < CLOSE {
                 return Some((point, surface));

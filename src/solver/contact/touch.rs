@@ -1,4 +1,4 @@
-//! What cloths touch with their triangles and edges: themselves, each other, meshes, and what is sharp.
+//! What cloths touch with their triangles and edges: themselves, each other, and what is sharp.
 //!
 //! A search finds the pairs of features that may touch, with the way that everything is on; substeps work on those pairs.
 //! As soon as a particle comes off its way there is another search.
@@ -20,14 +20,14 @@ use crate::solver::{
 };
 
 mod cloths;
-mod faces;
 mod lead;
 mod obstacle;
+mod outlines;
 mod places;
+mod target;
 
-use faces::Faces;
 use lead::BodyWay;
-use obstacle::{Approach, AtObstacle, Fixed, Meetings};
+use obstacle::{Approach, AtObstacle, Fixed};
 
 /// How far particles may come off their way before there is another search: this share of the mean edge at most.
 const SLACK: f32 = 0.2;
@@ -72,7 +72,7 @@ pub fn substeps_for_sharp<'a>(
     dt: f32,
 ) -> f32 {
     let sharp = near.filter(|obstacle| match &obstacle.shape {
-        Shape::Solid(solid) => obstacle::tightness(obstacle, topology, ctx).is_pierced_by(solid),
+        Shape::Solid(solid) => outlines::tightness(obstacle, topology, ctx).is_pierced_by(solid),
         Shape::Mesh(_) => false,
     });
     let ways = sharp.map(|obstacle| obstacle.start.translation.distance(obstacle.end.translation));
@@ -90,11 +90,6 @@ impl Running<'_> {
     /// Distance that the cloth keeps from cloth, m.
     fn self_distance(&self, mode: SelfCollision) -> f32 {
         self.topology.self_distance(mode, self.ctx.self_distance)
-    }
-
-    fn is_fixed(&self, particle: u32) -> bool {
-        let lanes = &self.scratch.lanes;
-        lanes.inverse_mass(lanes.order.slot(particle)) == 0.0
     }
 
     fn surface(&self) -> &Surface {
@@ -118,7 +113,6 @@ pub struct Touch {
     slack: Vec<f32>,
     places: Vec<Places>,
     pairs: Vec<Pair>,
-    faces: Faces,
     tangles: Vec<Tangle>,
     is_tangled: Vec<bool>,
     /// Numbers of the pairs that touched an obstacle.
@@ -147,8 +141,6 @@ impl Touch {
     fn forget(&mut self) {
         self.pairs.clear();
         self.tangles.clear();
-        self.faces.corners.clear();
-        self.faces.meetings.clear();
     }
 
     /// Looks for pairs in what is left of a step of `dt` seconds, of which the share `now` is over, if it is time to.
@@ -182,8 +174,7 @@ impl Touch {
             let (slack, span) = (self.slack[number], self.searched.clone());
             let at = Approach { cloth, number, first, total, ways, slack, span, dt };
             for i in 0..cloth.ctx.obstacles.len() {
-                let mut into = Meetings { fixed: &mut self.fixed, pairs: &mut self.pairs, faces: &mut self.faces };
-                self.at_obstacle.search(&at, i, &mut self.walk, &mut into);
+                self.at_obstacle.search(&at, i, &mut self.walk, (&mut self.fixed, &mut self.pairs));
             }
         }
         let count = self.start.len() + self.fixed.len();
@@ -257,7 +248,7 @@ impl Touch {
     pub fn solve(&mut self, cloths: &mut [Running], span: Range<f32>, h: f32, dt: f32) -> u32 {
         self.search(cloths, span.clone(), dt);
         let mut touched = 0;
-        if !(self.pairs.is_empty() && self.tangles.is_empty() && self.faces.meetings.is_empty()) {
+        if !(self.pairs.is_empty() && self.tangles.is_empty()) {
             self.lead_fixed(cloths, span.clone());
             self.points.has_parted = false;
             let most_parted = cloths.iter().map(|cloth| cloth.ctx.max_depenetration_velocity).fold(0.0, f32::max) * h;
@@ -276,7 +267,7 @@ impl Touch {
     /// Solves all pairs, and returns how many touched.
     fn solve_pairs(&mut self, most_parted: f32) -> u32 {
         let count = self.particle_count() as u32;
-        let Self { pairs, points, at_obstacles, faces: Faces { corners, meetings }, .. } = self;
+        let Self { pairs, points, at_obstacles, .. } = self;
         let mut touched = 0;
         at_obstacles.clear();
         for (i, pair) in pairs.iter_mut().enumerate() {
@@ -296,9 +287,6 @@ impl Touch {
             if !is_any_left {
                 break;
             }
-        }
-        for meeting in meetings {
-            touched += u32::from(meeting.solve(corners, points, most_parted, None).is_some());
         }
         touched
     }

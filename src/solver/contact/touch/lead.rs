@@ -92,19 +92,6 @@ impl Touch {
             touched += u32::from(given.is_some());
             push(cloths, on, given);
         }
-        for i in 0..self.faces.meetings.len() {
-            let meeting = self.faces.meetings[i];
-            let [first, end] = meeting.faces.map(|k| k as usize);
-            let mut on = None;
-            for k in first..end {
-                let corners = self.faces.corners[k];
-                on = self.body_of(cloths, &corners, false, span.end);
-            }
-            let Self { faces, points, .. } = &mut *self;
-            let given = meeting.solve(&faces.corners, points, most_parted, on.as_ref().map(Touched::on).as_ref());
-            touched += u32::from(given.is_some());
-            push(cloths, on, given);
-        }
         touched
     }
 

@@ -5,26 +5,22 @@ use core::ops::Range;
 use bevy::math::{Isometry3d, Vec3A};
 
 use super::{
-    faces::{self, Faces, Meeting},
+    outlines::{Outlines, distance_to, tightness},
     sink,
+    target::{Deformed, Target},
 };
 use crate::solver::{
-    StepContext, Topology,
     contact::{
-        Obstacle, Shape,
-        inside::{self, Whereabouts},
-        mesh::{MeshShape, PseudoNormals},
-        outline::{Outline, Tightness},
+        Shape, inside,
+        mesh::MeshShape,
+        outline::Outline,
         pair::{Features, Pair},
         search::{self, Found, Reach, Side, Ways},
         solid::Solid,
-        surface::{Bounds, Places, Surface, Walk},
+        surface::{Bounds, Places, Walk},
     },
     step::Running,
 };
-
-/// Distance that features keep from obstacles at least, m. Nearer, rounding decides which side they are on.
-const LEAST: f32 = 0.0002;
 
 /// A cloth on its way.
 pub struct Approach<'a> {
@@ -64,13 +60,6 @@ pub struct Fixed {
     pub point: u32,
 }
 
-/// What of cloths and obstacles may meet.
-pub struct Meetings<'a> {
-    pub fixed: &'a mut Vec<Fixed>,
-    pub pairs: &'a mut Vec<Pair>,
-    pub faces: &'a mut Faces,
-}
-
 /// What it takes to search at one obstacle after the other.
 #[derive(Clone, Debug, Default)]
 pub struct AtObstacle {
@@ -80,104 +69,14 @@ pub struct AtObstacle {
     places: Places,
     leaves: Vec<(u32, u32)>,
     found: Vec<Found>,
-    /// The face that is nearest to each particle.
-    nearest: Vec<NearestFace>,
-    whereabouts: Vec<Whereabouts>,
+    /// Whether each particle is inside of a closed mesh, of those that it matters of.
+    is_inside: Vec<Option<bool>>,
     /// Number of each of the obstacle's points among all.
     number: Vec<u32>,
     deformed: Deformed,
     /// Sharp corners and the triangles of the cloth that they have come through.
     pierced: Vec<(u32, usize)>,
-    /// Particles, of the cloth, and faces that they may meet.
-    at_faces: Vec<(u32, u32)>,
-    /// Outlines of the solids among each cloth's obstacles, with what they were drawn for.
-    outlines: Vec<Vec<(Solid, Tightness, Outline)>>,
-}
-
-/// The face that is nearest to a particle.
-#[derive(Clone, Copy, Debug)]
-struct NearestFace {
-    /// Distance, m.
-    length: f32,
-    /// From its nearest place to the particle, m.
-    between: Vec3A,
-    face: usize,
-}
-
-impl NearestFace {
-    const NONE: Self = Self { length: f32::INFINITY, between: Vec3A::ZERO, face: 0 };
-
-    /// Faces that are no steeper to each other than by this cosine go on from each other.
-    const GOES_ON: f32 = 0.9;
-
-    /// Whether the particle may come to touch another face before this one: it slides there, or comes from this one to that.
-    fn leaves_way_to(&self, other: &Found, target: &Target) -> bool {
-        if other.length > self.length + other.approach {
-            return false;
-        }
-        if other.face == self.face
-            || self.between.distance_squared(other.nearest.between) <= other.approach * other.approach
-        {
-            return true;
-        }
-        let [n, m] = [self.face, other.face].map(|face| target.normal(face));
-        n.dot(m) < Self::GOES_ON * (n.length_squared() * m.length_squared()).sqrt()
-    }
-}
-
-/// A mesh whose points move within its frame.
-#[derive(Clone, Debug, Default)]
-struct Deformed {
-    points: Vec<Vec3A>,
-    way: Vec<Vec3A>,
-    places: Places,
-    normals: PseudoNormals,
-}
-
-impl Deformed {
-    /// Follows a mesh in the part `span` of a step.
-    fn follow(&mut self, surface: &Surface, from: &[Vec3A], to: &[Vec3A], span: &Range<f32>, is_closed: bool) {
-        self.points.clear();
-        self.points.extend(from.iter().zip(to).map(|(&p, &q)| p.lerp(q, span.start)));
-        self.way.clear();
-        self.way.extend(from.iter().zip(to).map(|(&p, &q)| (q - p) * (span.end - span.start)));
-        let ways = Ways { position: &self.points, way: &self.way };
-        self.places.follow(surface, |triangle| ways.bounds(triangle), None::<fn(_) -> _>);
-        if is_closed {
-            self.normals.find(surface, &self.points);
-        }
-    }
-}
-
-/// An obstacle as the search sees it, in its own frame.
-#[derive(Clone, Copy)]
-struct Target<'a> {
-    points: &'a [Vec3A],
-    surface: &'a Surface,
-    places: &'a Places,
-    radii: &'a [f32],
-    has_faces: bool,
-    /// Those of a closed mesh.
-    normals: Option<&'a PseudoNormals>,
-    /// How far the points will come, where they move.
-    way: Option<&'a [Vec3A]>,
-}
-
-impl Target<'_> {
-    /// Normal of a face, as long as twice its area, m².
-    fn normal(&self, face: usize) -> Vec3A {
-        let [a, b, c] = self.corners(face);
-        (b - a).cross(c - a)
-    }
-
-    fn corners(&self, face: usize) -> [Vec3A; 3] {
-        self.surface.triangles[face].map(|i| self.points[i as usize])
-    }
-
-    /// How sharp its corners and edges have to be that the triangles of a cloth sink in too deep at them.
-    fn sharper_than(&self, cloth: &Running) -> f32 {
-        if self.has_faces { 2.0 * sink(cloth.ctx) / cloth.surface().longest_edge } else { 0.0 }
-    }
+    outlines: Outlines,
 }
 
 impl AtObstacle {
@@ -188,10 +87,10 @@ impl AtObstacle {
         for (i, obstacle) in cloth.ctx.obstacles.iter().enumerate() {
             is_needed |= match &obstacle.shape {
                 Shape::Solid(solid) => {
-                    draw(&mut self.outlines, number, i, solid, tightness(obstacle, cloth.topology, cloth.ctx));
-                    !self.outlines[number][i].2.points.is_empty()
+                    let tightness = tightness(obstacle, cloth.topology, cloth.ctx);
+                    !self.outlines.draw(number, i, solid, tightness).points.is_empty()
                 }
-                Shape::Mesh(_) => true,
+                Shape::Mesh(MeshShape { mesh, .. }) => mesh.surface.has_sharper_than(sharpness(cloth)),
             };
         }
         is_needed
@@ -199,29 +98,16 @@ impl AtObstacle {
 
     /// The outline that a point is of.
     pub fn outline(&self, fixed: &Fixed) -> &Outline {
-        &self.outlines[fixed.cloth as usize][fixed.obstacle as usize].2
+        self.outlines.of(fixed.cloth as usize, fixed.obstacle as usize)
     }
 
     /// Adds what of a cloth and obstacle `i` of it may meet.
-    pub fn search(&mut self, at: &Approach, i: usize, walk: &mut Walk, into: &mut Meetings) {
+    pub fn search(&mut self, at: &Approach, i: usize, walk: &mut Walk, (fixed, pairs): (&mut Vec<Fixed>, &mut Vec<Pair>)) {
         let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
         let surface = cloth.surface();
         let distance = distance_to(obstacle, cloth.ctx);
-        let Self {
-            position,
-            way,
-            places,
-            leaves,
-            found,
-            nearest,
-            whereabouts,
-            number,
-            deformed,
-            outlines,
-            at_faces,
-            pierced,
-        } = self;
-        let Some(target) = target(obstacle, &at.span, deformed, || &outlines[at.number][i].2) else { return };
+        let Self { position, way, places, leaves, found, is_inside, number, deformed, outlines, pierced } = self;
+        let Some(target) = Target::of(obstacle, &at.span, deformed, || outlines.of(at.number, i)) else { return };
         // In the obstacle's own frame it stays, and the cloth's way is that past it.
         let (poses, slack) = (at.poses(i), at.slack(i));
         let reached = distance + slack;
@@ -237,40 +123,23 @@ impl AtObstacle {
             places: target.places,
             ways: Ways { position: target.points, way: target.way.unwrap_or(&[]) },
             first: 0,
-            sharper_than: target.sharper_than(cloth),
+            sharper_than: if target.is_of_mesh { sharpness(cloth) } else { 0.0 },
             has_faces: false,
             radii: target.radii,
         };
         let friction = cloth.ctx.material.friction * obstacle.friction;
         let reach = Reach { distance, slack, friction, rest: None };
         found.clear();
-        nearest.clear();
-        nearest.resize(position.len(), NearestFace::NONE);
-        if target.has_faces {
-            find_at_faces(&a, &b, &reach, (walk, leaves), found, nearest);
-        }
         find_at_edges(&a, &b, &reach, (walk, leaves), found, pierced);
-        whereabouts.clear();
-        if let Some(normals) = target.normals {
-            whereabouts.resize(position.len(), Whereabouts::Unknown);
-            for one in found.iter().filter(|one| one.is_of_face()) {
-                let particle = (one.pair.points[0] - at.first) as usize;
-                if one.length <= nearest[particle].length {
-                    whereabouts[particle] = whereabouts_of(one, &target, normals);
-                }
-            }
-            let whole = target.places.whole();
-            for (place, whereabouts) in position.iter().zip(&mut *whereabouts) {
-                if *whereabouts == Whereabouts::Unknown && !whole.meets(&Bounds::around([*place])) {
-                    *whereabouts = Whereabouts::Outside;
-                }
-            }
-            inside::find_out(whereabouts, position, surface, (target.surface, target.places, target.points));
-        }
-        let is_inside = |particle: u32| whereabouts.get(particle as usize) == Some(&Whereabouts::Inside);
+        is_inside.clear();
+        is_inside.resize(if target.is_closed { position.len() } else { 0 }, None);
+        let mut is_inside = |particle: u32| {
+            let Some(known) = is_inside.get_mut(particle as usize) else { return false };
+            let place = position[particle as usize];
+            *known.get_or_insert_with(|| inside::is_inside(place, target.surface, target.places, target.points))
+        };
         number.clear();
         number.resize(target.points.len(), u32::MAX);
-        let Meetings { fixed, pairs, faces: into_faces } = into;
         let mut numbered = |point: u32| {
             let number = &mut number[point as usize];
             if *number == u32::MAX {
@@ -282,16 +151,8 @@ impl AtObstacle {
         // What is thinner than an edge is caught by the triangles alone, however deep they are in it.
         let thin = target.radii.iter().copied().filter(|&radius| radius < 0.5 * surface.longest_edge);
         let thickness = thin.fold(0.0, f32::max);
-        at_faces.clear();
         for one in &*found {
             let mut pair = one.pair;
-            if one.is_of_face() {
-                let particle = pair.points[0] - at.first;
-                if nearest[particle as usize].leaves_way_to(one, &target) {
-                    at_faces.push((particle, one.face as u32));
-                }
-                continue;
-            }
             if let Shape::Solid(solid) = &obstacle.shape
                 && !pierced.contains(&(pair.points[0], one.face))
                 && depth_of(one, solid, position, at.first) > 2.0 * sink(cloth.ctx) + thickness
@@ -312,89 +173,12 @@ impl AtObstacle {
             pair.normal = poses[0].rotation * pair.normal;
             pairs.push(pair);
         }
-        // Deep inside, nothing was near.
-        for particle in (0..position.len() as u32).filter(|&particle| is_inside(particle)) {
-            if nearest[particle as usize].length == f32::INFINITY && !cloth.is_fixed(particle) {
-                let place = position[particle as usize];
-                let near = inside::nearest(place, target.surface, target.places, target.points);
-                at_faces.extend(near.map(|(face, _)| (particle, face as u32)));
-            }
-        }
-        at_faces.sort_unstable();
-        let is_closed = target.normals.is_some();
-        for some in at_faces.chunk_by(|(particle, _), (other, _)| particle == other) {
-            let first = into_faces.corners.len() as u32;
-            into_faces
-                .corners
-                .extend(some.iter().map(|&(_, face)| target.surface.triangles[face as usize].map(&mut numbered)));
-            let (particle, end) = (at.first + some[0].0, into_faces.corners.len() as u32);
-            let corners = |&(_, face): &(u32, u32)| target.corners(face as usize);
-            let is_convex = is_closed && faces::are_convex(some.iter().map(corners));
-            into_faces.meetings.push(Meeting {
-                particle,
-                faces: [first, end],
-                distance,
-                friction,
-                is_closed,
-                is_convex,
-            });
-        }
     }
 }
 
-/// Distance that a cloth keeps from an obstacle, m.
-fn distance_to(obstacle: &Obstacle, ctx: &StepContext) -> f32 {
-    ctx.contact_distance().max(LEAST) + obstacle.rounding
-}
-
-/// How tightly a cloth lies on an obstacle.
-pub fn tightness(obstacle: &Obstacle, topology: &Topology, ctx: &StepContext) -> Tightness {
-    Tightness { edge: topology.surface().longest_edge, distance: distance_to(obstacle, ctx), sink: sink(ctx) }
-}
-
-/// Draws the outline of obstacle `i` of a cloth, where it isn't drawn yet for what the cloth `needs`.
-fn draw(outlines: &mut Vec<Vec<(Solid, Tightness, Outline)>>, cloth: usize, i: usize, solid: &Solid, needs: Tightness) {
-    if outlines.len() <= cloth {
-        outlines.resize_with(cloth + 1, Vec::new);
-    }
-    let outlines = &mut outlines[cloth];
-    if outlines.len() <= i {
-        outlines.resize_with(i + 1, || {
-            (*solid, Tightness { edge: f32::NAN, distance: 0.0, sink: 0.0 }, Outline::default())
-        });
-    }
-    let (drawn, met, outline) = &mut outlines[i];
-    if *drawn != *solid || *met != needs {
-        (*drawn, *met, *outline) = (*solid, needs, Outline::of(solid, needs));
-    }
-}
-
-/// An obstacle where it is when the part `span` of the step begins. None where nothing of it is sharp.
-fn target<'a>(
-    obstacle: &'a Obstacle,
-    span: &Range<f32>,
-    deformed: &'a mut Deformed,
-    outline: impl FnOnce() -> &'a Outline,
-) -> Option<Target<'a>> {
-    match &obstacle.shape {
-        Shape::Solid(_) => {
-            let Outline { points, radii, surface, places } = outline();
-            let target = Target { points, surface, places, radii, has_faces: false, normals: None, way: None };
-            (!points.is_empty()).then_some(target)
-        }
-        Shape::Mesh(MeshShape { mesh, deformed: None }) => {
-            let normals = mesh.is_closed.then_some(&mesh.normals);
-            let (points, surface, places) = (&mesh.points, &mesh.surface, &mesh.places);
-            Some(Target { points, surface, places, radii: &[], has_faces: true, normals, way: None })
-        }
-        Shape::Mesh(MeshShape { mesh, deformed: Some([from, to]) }) => {
-            deformed.follow(&mesh.surface, from, to, span, mesh.is_closed);
-            let Deformed { points, way, places, normals } = deformed;
-            let normals = mesh.is_closed.then_some(&*normals);
-            let surface = &mesh.surface;
-            Some(Target { points, surface, places, radii: &[], has_faces: true, normals, way: Some(way) })
-        }
-    }
+/// How sharp corners and edges of a mesh have to be that the triangles of a cloth sink in too deep at them.
+fn sharpness(cloth: &Running) -> f32 {
+    2.0 * sink(cloth.ctx) / cloth.surface().longest_edge
 }
 
 /// Takes the cloth's ways into the obstacle's frame, and returns the box around them.
@@ -411,28 +195,6 @@ fn to_frame(at: &Approach, poses: [Isometry3d; 2], position: &mut Vec<Vec3A>, wa
         bounds = bounds.union(Bounds { low: from.min(to), high: from.max(to) });
     }
     bounds
-}
-
-/// Finds pairs of particles and faces that are near, and how far each particle is from the nearest one.
-fn find_at_faces(
-    a: &Side,
-    b: &Side,
-    reach: &Reach,
-    (walk, leaves): (&mut Walk, &mut Vec<(u32, u32)>),
-    found: &mut Vec<Found>,
-    nearest: &mut [NearestFace],
-) {
-    leaves.clear();
-    walk.between((a.surface, a.places), (b.surface, b.places), |p, q| leaves.push((p, q)));
-    for &(p, q) in &*leaves {
-        search::points_at_faces((a, p), (b, q), reach, |one| {
-            let nearest = &mut nearest[(one.pair.points[0] - a.first) as usize];
-            if one.length < nearest.length {
-                *nearest = NearestFace { length: one.length, between: one.nearest.between, face: one.face };
-            }
-            found.push(one);
-        });
-    }
 }
 
 /// Finds pairs of the cloth's faces and edges with what is sharp.
@@ -475,12 +237,4 @@ fn depth_of(found: &Found, solid: &Solid, position: &[Vec3A], first: u32) -> f32
     let places = pair.points.into_iter().zip(weights).filter(|&(_, weight)| weight > 0.0);
     let place = places.map(|(point, weight)| position[(point - first) as usize] * weight).sum();
     -solid.surface(place).distance
-}
-
-/// On which side of its nearest face a particle is, by the normal of the closest place.
-fn whereabouts_of(found: &Found, target: &Target, normals: &PseudoNormals) -> Whereabouts {
-    let triangle = target.surface.triangles[found.face];
-    let weights = [1, 2, 3].map(|i| -found.nearest.weights[i]);
-    let normal = normals.at(triangle, target.normal(found.face), weights);
-    if found.nearest.between.dot(normal) < 0.0 { Whereabouts::Inside } else { Whereabouts::Outside }
 }

@@ -1,0 +1,198 @@
+//! Particles at the faces of meshes, eight at a time.
+//!
+//! Each block of particles knows the faces that it may come to meet, in the frame of the mesh, for as long as all of its
+//! particles are on the ways that it took them to be on. Then it looks for faces anew.
+
+use core::ops::Range;
+
+use bevy::math::{Isometry3d, Vec3A};
+use fearless_simd::{f32x8, prelude::*};
+
+use super::{
+    Bodies, MeshShape,
+    mesh::TriangleMesh,
+    project::Sight,
+    solid::Seen,
+    surface::Places,
+    sweep::{Correction, Passage},
+};
+use crate::solver::{
+    StepContext,
+    lanes::{Block, Run},
+    simd::{LANES, Lane, Vec3x8, lane},
+};
+
+mod look;
+mod nearest;
+mod way;
+
+use look::Look;
+
+/// Distance that cloth keeps from triangles at least, m. Nearer, rounding decides which side it is on.
+pub(super) const LEAST: f32 = 0.0002;
+
+/// The faces of one mesh that the particles of a cloth may meet.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Faces {
+    blocks: Vec<Known>,
+    look: Look,
+    /// Where the points of a mesh that moves within its frame are when the substep begins, and when it ends, m.
+    then: Vec<Vec3A>,
+    now: Vec<Vec3A>,
+    /// Boxes around the ways of its triangles in the step.
+    places: Places,
+    /// Whether the step has met the mesh.
+    is_begun: bool,
+}
+
+/// What one block knows.
+#[derive(Clone, Debug, Default)]
+struct Known {
+    /// Where the particles were at the moment `span.start` of the step, m, and how far they go within a step if nothing stops
+    /// them.
+    start: Block,
+    way: Block,
+    /// The part of the step that it knows faces for.
+    span: Range<f32>,
+    /// By how much particles may come off their ways, m.
+    slack: f32,
+    /// Faces of all particles; where one has fewer than another, some twice.
+    faces: Vec<[u32; LANES]>,
+    /// By how much farther a particle is taken to be, m: those that have no faces are far from all.
+    beyond: Lane,
+}
+
+impl Faces {
+    /// Begins a step: nothing is known yet.
+    pub fn begin(&mut self) {
+        self.is_begun = false;
+    }
+
+    /// What is to be seen of a mesh in the part `span` of the step.
+    pub(super) fn sight<'a>(
+        &'a mut self,
+        shape: &'a MeshShape,
+        ctx: &StepContext,
+        (bodies, obstacle): (&Bodies, usize),
+        passage: &Passage,
+        span: Range<f32>,
+        block_count: usize,
+    ) -> FacesInSight<'a> {
+        let Self { blocks, look, then, now, places, is_begun } = self;
+        let is_new = !core::mem::replace(is_begun, true);
+        if is_new {
+            look.begin();
+            blocks.resize_with(block_count, Known::default);
+            blocks.iter_mut().for_each(|known| known.span = 0.0..0.0);
+        }
+        let MeshShape { mesh, deformed } = shape;
+        let (points, places) = match deformed {
+            None => ([&*mesh.points; 2], &mesh.places),
+            Some([from, to]) => {
+                if is_new {
+                    look::follow(places, &mesh.surface, from, to);
+                }
+                for (points, t) in [(&mut *then, span.start), (&mut *now, span.end)] {
+                    points.clear();
+                    points.extend(from.iter().zip(&**to).map(|(from, &to)| from.lerp(to, t)));
+                }
+                ([&**then, &**now], &*places)
+            }
+        };
+        let dt = ctx.dt.min(crate::solver::MAX_TIME_STEP);
+        let [_, end] = bodies.poses_ahead(ctx, obstacle, span.start..1.0, dt);
+        FacesInSight {
+            mesh,
+            points,
+            is_deformed: deformed.is_some(),
+            places,
+            blocks,
+            look,
+            block: 0,
+            passage: *passage,
+            gravity: ctx.gravity,
+            end,
+            span,
+            dt,
+        }
+    }
+}
+
+/// What the particles of a block see of a mesh.
+pub(super) struct FacesInSight<'a> {
+    mesh: &'a TriangleMesh,
+    /// When the substep begins, and when it ends.
+    points: [&'a [Vec3A]; 2],
+    is_deformed: bool,
+    places: &'a Places,
+    blocks: &'a mut [Known],
+    look: &'a mut Look,
+    block: usize,
+    passage: Passage,
+    /// m/s²
+    gravity: Vec3A,
+    /// Pose of the mesh at the end of the step.
+    end: Isometry3d,
+    span: Range<f32>,
+    /// Duration of the step, s.
+    dt: f32,
+}
+
+impl FacesInSight<'_> {
+    fn known(&self) -> &Known {
+        &self.blocks[self.block]
+    }
+
+    /// Corners of a face when the substep begins, or when it ends.
+    fn corners(&self, points: &[Vec3A], face: u32) -> [Vec3A; 3] {
+        self.mesh.surface.triangles[face as usize].map(|i| points[i as usize])
+    }
+
+    #[inline(always)]
+    fn seen_at<S: Simd>(&self, simd: S, local: Vec3x8<S>, points: &[Vec3A]) -> nearest::Nearest<S> {
+        let known = self.known();
+        let triangles = &self.mesh.surface.triangles;
+        nearest::nearest(simd, local, (triangles, points), known, self.mesh.is_closed)
+    }
+}
+
+impl Sight for FacesInSight<'_> {
+    /// Out of one face, a particle may come into another.
+    const PASSES: u32 = 3;
+
+    #[inline(always)]
+    fn turn_to<S: Simd>(&mut self, simd: S, block: usize, run: &Run, local: Vec3x8<S>) -> bool {
+        self.block = block;
+        let Known { start, way, span, slack, .. } = self.known();
+        let since = f32x8::splat(simd, self.span.end - span.start);
+        let off = local - Vec3x8::load(simd, start) - Vec3x8::load(simd, way) * since;
+        let is_free = lane(simd, &run.inverse_mass[block]).simd_gt(0.0);
+        let is_off = is_free & off.dot(off).simd_gt(slack * slack);
+        if self.span.end > span.end || is_off.any_true() {
+            self.look_around(run);
+        }
+        !self.known().faces.is_empty()
+    }
+
+    #[inline(always)]
+    fn seen<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Seen<f32x8<S>> {
+        self.seen_at(simd, local, self.points[1]).seen
+    }
+
+    #[inline(always)]
+    fn seen_before<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Seen<f32x8<S>> {
+        self.seen_at(simd, local, self.points[0]).seen
+    }
+
+    #[inline(always)]
+    fn own_way<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Vec3x8<S> {
+        if !self.is_deformed {
+            return Vec3x8::splat(simd, [0.0; 3]);
+        }
+        self.seen_at(simd, local, self.points[1]).way_from(simd, &self.mesh.surface.triangles, self.points)
+    }
+
+    fn correction(&self, i: usize, passage: &Passage, position: Vec3A, previous: Vec3A) -> Option<Correction> {
+        way::correction(self, i, passage, position, previous)
+    }
+}

@@ -1,0 +1,222 @@
+//! Which faces the particles of a block may come to meet.
+
+use bevy::math::{Isometry3d, Vec3A};
+
+use super::{FacesInSight, Known};
+use crate::solver::{
+    contact::{
+        closest, inside,
+        mesh::TriangleMesh,
+        surface::{Bounds, Places, Surface},
+    },
+    lanes::{Block, Run},
+    simd::{LANES, Lane},
+};
+
+/// By how much particles may come off their ways before their block looks anew, m: this much, and a share of their ways. The
+/// less, the fewer faces they have to keep an eye on.
+const SLACK: f32 = 0.0005;
+const SLACK_OF_WAY: f32 = 0.25;
+
+/// Share of the fall that is taken to happen: nobody knows what is held up.
+const FALL: f32 = 0.5;
+
+/// How far blocks look ahead at most, in lengths of the mesh's edges: the farther, the more they see that never comes near.
+const EDGES_AHEAD: f32 = 1.0;
+
+/// Particles are a patch, and are looked after together, where the box around them is no longer than so many boxes around one.
+const PATCH: f32 = 8.0;
+
+/// How far around what has no faces it is looked that there are none, in sizes of the region that a particle stays in: what is
+/// beside it is then known too.
+const CLEAR: f32 = 32.0;
+
+/// By how much farther what has no faces is taken to be, m: its square is no number any more.
+const FAR: f32 = 1e30;
+
+/// Working memory.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Look {
+    /// The faces that each particle of the block may meet, and how far they are from the middle of its way, m.
+    found: [Vec<(f32, u32)>; LANES],
+    clear: Clear,
+}
+
+/// Boxes around the ways of triangles whose points go from one place to another.
+pub(super) fn follow(places: &mut Places, surface: &Surface, from: &[Vec3A], to: &[Vec3A]) {
+    let bounds = |triangle: [u32; 3]| Bounds::around(triangle.into_iter().flat_map(|i| [from[i as usize], to[i as usize]]));
+    places.follow(surface, bounds, None::<fn(_) -> _>);
+}
+
+/// The region that a particle stays in, in the frame of the mesh, m.
+#[derive(Clone, Copy)]
+struct Region {
+    centre: Vec3A,
+    radius: f32,
+}
+
+/// A ball that no face comes into, in the frame of the mesh.
+#[derive(Clone, Copy, Debug, Default)]
+struct Clear {
+    centre: Vec3A,
+    /// m
+    radius: f32,
+    /// Whether it is inside of the mesh.
+    is_inside: bool,
+}
+
+fn lane_of([x, y, z]: &Block, i: usize) -> Vec3A {
+    Vec3A::new(x[i], y[i], z[i])
+}
+
+fn set_lane([x, y, z]: &mut Block, i: usize, value: Vec3A) {
+    (x[i], y[i], z[i]) = value.into();
+}
+
+impl Look {
+    /// Begins a step: nothing is known yet.
+    pub fn begin(&mut self) {
+        self.clear = Clear::default();
+    }
+}
+
+impl FacesInSight<'_> {
+    /// Finds out which way the particles of the block are on, and what they may come to meet there.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn look_around(&mut self, run: &Run) {
+        let is_free = run.inverse_mass[self.block].map(|w| w > 0.0);
+        let regions = self.expect(run, is_free);
+        self.find(&regions);
+        self.find_inside(&regions);
+        self.know();
+    }
+
+    /// Notes on which ways the particles are, and returns the regions of those that are free.
+    fn expect(&mut self, run: &Run, is_free: [bool; LANES]) -> [Option<Region>; LANES] {
+        let (block, span, known) = (self.block, &self.span, &mut self.blocks[self.block]);
+        let left = (1.0 - span.start) * self.dt;
+        let [start, now, end] = [self.passage.start, self.passage.end, self.end].map(|pose: Isometry3d| pose.inverse());
+        let fall = self.gravity * (0.5 * FALL * left * left);
+        let mut longest: f32 = 0.0;
+        for i in (0..LANES).filter(|&i| is_free[i]) {
+            let before = lane_of(&run.previous[block], i);
+            let from = start.transform_point(before);
+            let to = end.transform_point(before + lane_of(&run.velocity[block], i) * left + fall);
+            set_lane(&mut known.start, i, from);
+            set_lane(&mut known.way, i, (to - from) / (1.0 - span.start));
+            longest = longest.max(from.distance_squared(to));
+        }
+        let longest = longest.sqrt();
+        let share = (EDGES_AHEAD * self.mesh.surface.mean_edge / longest.max(f32::MIN_POSITIVE)).min(1.0);
+        let until = (span.start + share * (1.0 - span.start)).max(span.end);
+        known.span = span.start..until;
+        let over = until - span.start;
+        known.slack = SLACK + (SLACK_OF_WAY * longest + FALL * fall.length()) * over / (1.0 - span.start);
+        core::array::from_fn(|i| {
+            is_free[i].then(|| {
+                let (from, half) = (lane_of(&known.start, i), lane_of(&known.way, i) * (0.5 * over));
+                let centre = from + half;
+                let place = now.transform_point(lane_of(&run.position[block], i));
+                Region { centre, radius: half.length().max(place.distance(centre)) + known.slack }
+            })
+        })
+    }
+
+    /// Finds the faces that come near to regions.
+    fn find(&mut self, regions: &[Option<Region>; LANES]) {
+        let left = {
+            let known = &self.blocks[self.block].span;
+            (known.end - known.start) / (self.span.end - self.span.start)
+        };
+        let Self { look: Look { found, .. }, mesh: TriangleMesh { surface, .. }, points: [points, now], places, .. } = self;
+        found.iter_mut().for_each(Vec::clear);
+        // How far a face goes, of a mesh that moves within its frame.
+        let is_deformed = self.is_deformed;
+        let way_of = |face: usize| {
+            let ways = surface.triangles[face].into_iter().map(|i| points[i as usize].distance_squared(now[i as usize]));
+            if is_deformed { ways.fold(0.0, f32::max).sqrt() * left } else { 0.0 }
+        };
+        let mut farthest: f32 = 0.0;
+        let distance = self.passage.distance;
+        let boxes = regions.map(|region| match region {
+            Some(Region { centre, radius }) => Bounds::around([centre]).grown(radius + distance),
+            None => Bounds::NOTHING,
+        });
+        let whole = boxes.iter().copied().fold(Bounds::NOTHING, Bounds::union);
+        let widest = regions.iter().flatten().map(|region| region.radius + distance).fold(0.0, f32::max);
+        let edge = widest.max(surface.mean_edge);
+        let is_patch = (whole.high - whole.low).max_element() <= PATCH * 2.0 * edge;
+        let mut meet = |lanes: core::ops::Range<usize>, face: usize| {
+            for i in lanes {
+                let Some(Region { centre, radius }) = regions[i] else { continue };
+                if !boxes[i].meets(&places.of_triangles[face]) {
+                    continue;
+                }
+                let corners = surface.triangles[face].map(|k| points[k as usize]);
+                let length = centre.distance(closest::place_on_triangle(centre, corners));
+                let way = way_of(face);
+                if length <= distance + radius + way {
+                    farthest = farthest.max(way);
+                    found[i].push((length, face as u32));
+                }
+            }
+        };
+        if is_patch {
+            surface.for_each_near(places, |bounds| bounds.meets(&whole), |face| meet(0..LANES, face));
+        } else {
+            for (i, bounds) in boxes.iter().enumerate().filter(|&(i, _)| regions[i].is_some()) {
+                surface.for_each_near(places, |other| bounds.meets(other), |face| meet(i..i + 1, face));
+            }
+        }
+        // What is so much farther than the nearest one never gets to be the nearest.
+        for (found, region) in found.iter_mut().zip(regions) {
+            let Some(Region { radius, .. }) = region else { continue };
+            let least = found.iter().map(|&(length, _)| length).fold(f32::INFINITY, f32::min);
+            found.retain(|&(length, _)| length <= least + 2.0 * (radius + farthest));
+        }
+    }
+
+    /// Finds the nearest face of particles that are deep inside of a closed mesh: those of a cloth that began there.
+    fn find_inside(&mut self, regions: &[Option<Region>; LANES]) {
+        let Self { look: Look { found, clear }, mesh, points: [points, _], places, .. } = self;
+        if !mesh.is_closed {
+            return;
+        }
+        if self.is_deformed {
+            *clear = Clear::default();
+        }
+        let TriangleMesh { surface, .. } = mesh;
+        for (found, region) in found.iter_mut().zip(regions) {
+            let Some(Region { centre, radius }) = *region else { continue };
+            if !found.is_empty() || !places.whole().meets(&Bounds::around([centre])) {
+                continue;
+            }
+            if centre.distance(clear.centre) >= clear.radius {
+                let farthest = CLEAR * (radius + self.passage.distance);
+                let nearest = inside::nearest(centre, farthest, surface, places, points);
+                let is_inside = inside::is_inside(centre, surface, places, points);
+                *clear = Clear { centre, radius: nearest.map_or(farthest, |(_, length)| length), is_inside };
+            }
+            if clear.is_inside {
+                let nearest = inside::nearest(centre, f32::INFINITY, surface, places, points);
+                found.extend(nearest.map(|(face, length)| (length, face as u32)));
+            }
+        }
+    }
+
+    /// Keeps what has been found, side by side.
+    fn know(&mut self) {
+        let found = &self.look.found;
+        let Known { faces, beyond, .. } = &mut self.blocks[self.block];
+        let most = found.iter().map(Vec::len).max().unwrap_or(0);
+        *beyond = Lane::default();
+        for (beyond, _) in beyond.iter_mut().zip(found).filter(|(_, found)| found.is_empty()) {
+            *beyond = FAR;
+        }
+        faces.clear();
+        faces.extend((0..most).map(|k| {
+            core::array::from_fn(|i| found[i].get(k).or(found[i].first()).map_or(0, |&(_, face)| face))
+        }));
+    }
+}

@@ -1,0 +1,48 @@
+//! The outlines of solids, each drawn once for what a cloth needs.
+
+use crate::solver::{
+    StepContext, Topology,
+    contact::{
+        Obstacle, faces,
+        outline::{Outline, Tightness},
+        solid::Solid,
+    },
+};
+
+use super::sink;
+
+/// Outlines of the solids among each cloth's obstacles, with what they were drawn for.
+#[derive(Clone, Debug, Default)]
+pub struct Outlines {
+    drawn: Vec<Vec<Option<(Solid, Tightness, Outline)>>>,
+    /// What others have.
+    nothing: Outline,
+}
+
+impl Outlines {
+    /// Draws that of obstacle `i` of a cloth, where it isn't drawn yet for what the cloth `needs`.
+    pub fn draw(&mut self, cloth: usize, i: usize, solid: &Solid, needs: Tightness) -> &Outline {
+        let Self { drawn, .. } = self;
+        drawn.resize_with(drawn.len().max(cloth + 1), Vec::new);
+        let some = &mut drawn[cloth];
+        some.resize_with(some.len().max(i + 1), || None);
+        let known = some[i].take().filter(|(known, met, _)| known == solid && *met == needs);
+        &some[i].insert(known.unwrap_or_else(|| (*solid, needs, Outline::of(solid, needs)))).2
+    }
+
+    /// That of obstacle `i` of a cloth: of one that hasn't been drawn, nothing.
+    pub fn of(&self, cloth: usize, i: usize) -> &Outline {
+        let outline = self.drawn.get(cloth).and_then(|some| some.get(i)?.as_ref());
+        outline.map_or(&self.nothing, |(_, _, outline)| outline)
+    }
+}
+
+/// Distance that a cloth keeps from an obstacle with its triangles and edges, m.
+pub fn distance_to(obstacle: &Obstacle, ctx: &StepContext) -> f32 {
+    ctx.contact_distance().max(faces::LEAST) + obstacle.rounding
+}
+
+/// How tightly a cloth lies on an obstacle.
+pub fn tightness(obstacle: &Obstacle, topology: &Topology, ctx: &StepContext) -> Tightness {
+    Tightness { edge: topology.surface().longest_edge, distance: distance_to(obstacle, ctx), sink: sink(ctx) }
+}
