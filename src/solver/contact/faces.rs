@@ -4,6 +4,7 @@
 //! particles are on the ways that it took them to be on. Then it looks for faces anew.
 
 use core::ops::Range;
+use std::sync::Arc;
 
 use bevy::math::{Isometry3d, Vec3A};
 use fearless_simd::{f32x8, prelude::*};
@@ -26,7 +27,7 @@ mod look;
 mod nearest;
 mod way;
 
-use look::Look;
+use look::{Clear, Look};
 
 /// Distance that cloth keeps from triangles at least, m. Nearer, rounding decides which side it is on.
 pub(super) const LEAST: f32 = 0.0002;
@@ -34,6 +35,8 @@ pub(super) const LEAST: f32 = 0.0002;
 /// The faces of one mesh that the particles of a cloth may meet.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Faces {
+    /// The mesh that the blocks know.
+    mesh: Option<Arc<TriangleMesh>>,
     blocks: Vec<Known>,
     look: Look,
     /// Where the points of a mesh that moves within its frame are when the substep begins, and when it ends, m.
@@ -56,16 +59,69 @@ struct Known {
     span: Range<f32>,
     /// By how much particles may come off their ways, m.
     slack: f32,
-    /// Faces of all particles; where one has fewer than another, some twice.
+    /// Faces of all particles; where one has fewer than another, the first of them again.
     faces: Vec<[u32; LANES]>,
+    /// Their corners when the substep ends, and, of a mesh that moves within its frame, when it begins, m.
+    now: Vec<[Block; 3]>,
+    then: Vec<[Block; 3]>,
+    /// How the faces of each particle are to each other.
+    terrain: Terrain,
+    /// Their planes, where that is what counts.
+    planes: Vec<Plane>,
+    /// Where each particle has last been seen far from all faces.
+    clear: [Clear; LANES],
     /// By how much farther a particle is taken to be, m: those that have no faces are far from all.
     beyond: Lane,
+}
+
+/// How faces are to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Terrain {
+    /// Anyhow: out of one, a particle may come into another.
+    #[default]
+    Rough,
+    /// None rises above another.
+    Convex,
+    /// And they are so flat to each other that the highest of their planes is the surface.
+    Even,
+}
+
+/// Planes, eight at a time: all places p with n · p = c.
+#[derive(Clone, Copy, Debug, Default)]
+struct Plane {
+    normal: Block,
+    /// m
+    offset: Lane,
+}
+
+/// A point of a block.
+fn lane_of([x, y, z]: &Block, i: usize) -> Vec3A {
+    Vec3A::new(x[i], y[i], z[i])
+}
+
+fn set_lane([x, y, z]: &mut Block, i: usize, value: Vec3A) {
+    (x[i], y[i], z[i]) = value.into();
 }
 
 impl Faces {
     /// Begins a step: nothing is known yet.
     pub fn begin(&mut self) {
         self.is_begun = false;
+    }
+
+    fn begin_at(&mut self, MeshShape { mesh, deformed }: &MeshShape, block_count: usize) {
+        self.blocks.resize_with(block_count, Known::default);
+        // What is clear of a mesh stays so, as long as the mesh stays the same.
+        let is_same = deformed.is_none() && self.mesh.as_ref().is_some_and(|known| Arc::ptr_eq(known, mesh));
+        for known in &mut self.blocks {
+            known.span = 0.0..0.0;
+            if !is_same {
+                known.clear = [Clear::default(); LANES];
+            }
+        }
+        if !is_same {
+            self.mesh = Some(mesh.clone());
+        }
     }
 
     /// What is to be seen of a mesh in the part `span` of the step.
@@ -78,14 +134,12 @@ impl Faces {
         span: Range<f32>,
         block_count: usize,
     ) -> FacesInSight<'a> {
-        let Self { blocks, look, then, now, places, is_begun } = self;
-        let is_new = !core::mem::replace(is_begun, true);
-        if is_new {
-            look.begin();
-            blocks.resize_with(block_count, Known::default);
-            blocks.iter_mut().for_each(|known| known.span = 0.0..0.0);
-        }
         let MeshShape { mesh, deformed } = shape;
+        let is_new = !core::mem::replace(&mut self.is_begun, true);
+        if is_new {
+            self.begin_at(shape, block_count);
+        }
+        let Self { blocks, look, then, now, places, .. } = self;
         let (points, places) = match deformed {
             None => ([&*mesh.points; 2], &mesh.places),
             Some([from, to]) => {
@@ -148,17 +202,34 @@ impl FacesInSight<'_> {
         self.mesh.surface.triangles[face as usize].map(|i| points[i as usize])
     }
 
-    #[inline(always)]
-    fn seen_at<S: Simd>(&self, simd: S, local: Vec3x8<S>, points: &[Vec3A]) -> nearest::Nearest<S> {
-        let known = self.known();
-        let triangles = &self.mesh.surface.triangles;
-        nearest::nearest(simd, local, (triangles, points), known, self.mesh.is_closed)
+    /// Takes the corners of the faces that the block knows to where they are in this substep.
+    fn follow(&mut self) {
+        let Self { mesh, points: [then, now], .. } = *self;
+        let is_deformed = self.is_deformed;
+        let known = &mut self.blocks[self.block];
+        let mut side_by_side = |places: &[Vec3A], into: &mut Vec<[Block; 3]>| {
+            into.clear();
+            into.extend(known.faces.iter().map(|faces| {
+                let mut corners = [Block::default(); 3];
+                for (i, &face) in faces.iter().enumerate() {
+                    for (corner, &point) in corners.iter_mut().zip(&mesh.surface.triangles[face as usize]) {
+                        set_lane(corner, i, places[point as usize]);
+                    }
+                }
+                corners
+            }));
+        };
+        side_by_side(now, &mut known.now);
+        if is_deformed {
+            side_by_side(then, &mut known.then);
+        }
     }
 }
 
 impl Sight for FacesInSight<'_> {
-    /// Out of one face, a particle may come into another.
-    const PASSES: u32 = 3;
+    fn passes(&self) -> u32 {
+        if self.known().terrain == Terrain::Rough { 3 } else { 1 }
+    }
 
     #[inline(always)]
     fn turn_to<S: Simd>(&mut self, simd: S, block: usize, run: &Run, local: Vec3x8<S>) -> bool {
@@ -170,18 +241,28 @@ impl Sight for FacesInSight<'_> {
         let is_off = is_free & off.dot(off).simd_gt(slack * slack);
         if self.span.end > span.end || is_off.any_true() {
             self.look_around(run);
+        } else if self.is_deformed {
+            self.follow();
         }
         !self.known().faces.is_empty()
     }
 
     #[inline(always)]
     fn seen<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Seen<f32x8<S>> {
-        self.seen_at(simd, local, self.points[1]).seen
+        let known = self.known();
+        match known.terrain {
+            Terrain::Even => nearest::highest(simd, local, &known.planes),
+            _ => nearest::nearest(simd, local, &known.now, known, self.mesh.is_closed).seen,
+        }
     }
 
     #[inline(always)]
     fn seen_before<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Seen<f32x8<S>> {
-        self.seen_at(simd, local, self.points[0]).seen
+        if !self.is_deformed {
+            return self.seen(simd, local);
+        }
+        let known = self.known();
+        nearest::nearest(simd, local, &known.then, known, self.mesh.is_closed).seen
     }
 
     #[inline(always)]
@@ -189,7 +270,8 @@ impl Sight for FacesInSight<'_> {
         if !self.is_deformed {
             return Vec3x8::splat(simd, [0.0; 3]);
         }
-        self.seen_at(simd, local, self.points[1]).way_from(simd, &self.mesh.surface.triangles, self.points)
+        let known = self.known();
+        nearest::nearest(simd, local, &known.now, known, self.mesh.is_closed).way_from(simd, &known.then, &known.now)
     }
 
     fn correction(&self, i: usize, passage: &Passage, position: Vec3A, previous: Vec3A) -> Option<Correction> {

@@ -38,18 +38,22 @@ pub fn nearest(
 ) -> Option<(usize, f32)> {
     let mut best = None;
     let least = core::cell::Cell::new(farthest * farthest);
-    let is_nearer = |bounds: &Bounds| {
+    let beyond = |bounds: &Bounds| {
         let beyond = (bounds.low - place).max(place - bounds.high).max(Vec3A::ZERO);
-        beyond.length_squared() < least.get()
+        beyond.length_squared()
     };
-    surface.for_each_near(places, is_nearer, |triangle| {
+    let mut visit = |triangle: usize| {
         let corners = surface.triangles[triangle].map(|i| points[i as usize]);
         let squared = closest::place_on_triangle(place, corners).distance_squared(place);
         if squared < least.get() {
             least.set(squared);
             best = Some((triangle, squared.sqrt()));
         }
-    });
+    };
+    // One that is rather near tells most others apart at once.
+    let likely = surface.leaf_by(|one, other| beyond(&places.of_nodes[other]) < beyond(&places.of_nodes[one]));
+    surface.of_leaf(likely).for_each(&mut visit);
+    surface.for_each_near(places, |bounds| beyond(bounds) < least.get(), visit);
     best
 }
 

@@ -142,7 +142,7 @@ impl Past<'_, '_> {
                 if !sight.turn_to(simd, block, self.run, local) {
                     continue;
                 }
-                for _ in 0..V::PASSES {
+                for _ in 0..sight.passes() {
                     let Some(touching) = self.meet(simd, sight, &course, drift, block) else { break };
                     let Touching { touches, mut swept, .. } = touching;
                     let known = contacts;

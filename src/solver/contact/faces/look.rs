@@ -2,14 +2,14 @@
 
 use bevy::math::{Isometry3d, Vec3A};
 
-use super::{FacesInSight, Known};
+use super::{FacesInSight, Known, Plane, Terrain, lane_of, set_lane};
 use crate::solver::{
     contact::{
         closest, inside,
         mesh::TriangleMesh,
         surface::{Bounds, Places, Surface},
     },
-    lanes::{Block, Run},
+    lanes::Run,
     simd::{LANES, Lane},
 };
 
@@ -31,6 +31,13 @@ const PATCH: f32 = 8.0;
 /// beside it is then known too.
 const CLEAR: f32 = 32.0;
 
+/// Cosine of the angle between faces up to which the highest of their planes is the surface: beyond the edge between them, that
+/// keeps particles off by 3 % of their distance more at most.
+const EVEN: f32 = 0.9;
+
+/// By which share of its size a face may rise above another by rounding alone.
+const ROUNDING: f32 = 1e-3;
+
 /// By how much farther what has no faces is taken to be, m: its square is no number any more.
 const FAR: f32 = 1e30;
 
@@ -39,7 +46,6 @@ const FAR: f32 = 1e30;
 pub(super) struct Look {
     /// The faces that each particle of the block may meet, and how far they are from the middle of its way, m.
     found: [Vec<(f32, u32)>; LANES],
-    clear: Clear,
 }
 
 /// Boxes around the ways of triangles whose points go from one place to another.
@@ -57,27 +63,12 @@ struct Region {
 
 /// A ball that no face comes into, in the frame of the mesh.
 #[derive(Clone, Copy, Debug, Default)]
-struct Clear {
+pub(super) struct Clear {
     centre: Vec3A,
     /// m
     radius: f32,
     /// Whether it is inside of the mesh.
     is_inside: bool,
-}
-
-fn lane_of([x, y, z]: &Block, i: usize) -> Vec3A {
-    Vec3A::new(x[i], y[i], z[i])
-}
-
-fn set_lane([x, y, z]: &mut Block, i: usize, value: Vec3A) {
-    (x[i], y[i], z[i]) = value.into();
-}
-
-impl Look {
-    /// Begins a step: nothing is known yet.
-    pub fn begin(&mut self) {
-        self.clear = Clear::default();
-    }
 }
 
 impl FacesInSight<'_> {
@@ -179,26 +170,28 @@ impl FacesInSight<'_> {
 
     /// Finds the nearest face of particles that are deep inside of a closed mesh: those of a cloth that began there.
     fn find_inside(&mut self, regions: &[Option<Region>; LANES]) {
-        let Self { look: Look { found, clear }, mesh, points: [points, _], places, .. } = self;
+        let Self { look: Look { found, .. }, blocks, mesh, points: [points, _], places, .. } = self;
         if !mesh.is_closed {
             return;
         }
-        if self.is_deformed {
-            *clear = Clear::default();
-        }
         let TriangleMesh { surface, .. } = mesh;
-        for (found, region) in found.iter_mut().zip(regions) {
+        let clear = &mut blocks[self.block].clear;
+        if self.is_deformed {
+            *clear = [Clear::default(); LANES];
+        }
+        for (i, (found, region)) in found.iter_mut().zip(regions).enumerate() {
             let Some(Region { centre, radius }) = *region else { continue };
             if !found.is_empty() || !places.whole().meets(&Bounds::around([centre])) {
                 continue;
             }
-            if centre.distance(clear.centre) >= clear.radius {
+            let known = clear.iter().find(|clear| centre.distance(clear.centre) < clear.radius);
+            clear[i] = known.copied().unwrap_or_else(|| {
                 let farthest = CLEAR * (radius + self.passage.distance);
                 let nearest = inside::nearest(centre, farthest, surface, places, points);
                 let is_inside = inside::is_inside(centre, surface, places, points);
-                *clear = Clear { centre, radius: nearest.map_or(farthest, |(_, length)| length), is_inside };
-            }
-            if clear.is_inside {
+                Clear { centre, radius: nearest.map_or(farthest, |(_, length)| length), is_inside }
+            });
+            if clear[i].is_inside {
                 let nearest = inside::nearest(centre, f32::INFINITY, surface, places, points);
                 found.extend(nearest.map(|(face, length)| (length, face as u32)));
             }
@@ -218,5 +211,46 @@ impl FacesInSight<'_> {
         faces.extend((0..most).map(|k| {
             core::array::from_fn(|i| found[i].get(k).or(found[i].first()).map_or(0, |&(_, face)| face))
         }));
+        self.follow();
+        self.survey();
+    }
+
+    /// Finds out how the faces are to each other.
+    fn survey(&mut self) {
+        let mesh = self.mesh;
+        let known = &mut self.blocks[self.block];
+        known.terrain = Terrain::Rough;
+        known.planes.clear();
+        if !mesh.is_closed || self.is_deformed {
+            return;
+        }
+        let (mut is_convex, mut is_even) = (true, true);
+        let planes = &mut known.planes;
+        for corners in &known.now {
+            let mut plane = Plane::default();
+            for i in 0..LANES {
+                let [a, b, c] = [0, 1, 2].map(|k| lane_of(&corners[k], i));
+                let normal = (b - a).cross(c - a).normalize_or_zero();
+                set_lane(&mut plane.normal, i, normal);
+                plane.offset[i] = normal.dot(a);
+                for (other, of_other) in planes.iter().zip(&known.now) {
+                    let outward = lane_of(&other.normal, i);
+                    is_convex &= [a, b, c].iter().all(|&p| outward.dot(p) - other.offset[i] <= ROUNDING * a.distance(b));
+                    is_convex &=
+                        of_other.iter().all(|p| normal.dot(lane_of(p, i)) - plane.offset[i] <= ROUNDING * a.distance(b));
+                    is_even &= normal.dot(outward) >= EVEN;
+                }
+            }
+            planes.push(plane);
+        }
+        // Those that have no faces are far from all.
+        for (i, _) in known.beyond.iter().enumerate().filter(|&(_, &beyond)| beyond > 0.0) {
+            planes.iter_mut().for_each(|plane| plane.offset[i] = -FAR);
+        }
+        known.terrain = match (is_convex, is_even) {
+            (true, true) => Terrain::Even,
+            (true, false) => Terrain::Convex,
+            _ => Terrain::Rough,
+        };
     }
 }

@@ -1,13 +1,12 @@
 //! The nearest places of faces, eight at a time.
 
-use bevy::math::{Vec3A, Vec4};
 use fearless_simd::{f32x8, prelude::*};
 
-use super::Known;
+use super::{Known, Plane};
 use crate::solver::{
     contact::{number::Number, solid::Seen},
-    lanes::apart,
-    simd::{LANES, Vec3Wide, Vec3x8, lane},
+    lanes::Block,
+    simd::{Vec3Wide, Vec3x8, lane},
 };
 
 /// Shares by which lengths of nearest places may differ that are one and the same, but for rounding.
@@ -21,7 +20,8 @@ pub(super) struct Nearest<S: Simd> {
     pub seen: Seen<f32x8<S>>,
     /// Weights of the face's corners there.
     weights: Vec3x8<S>,
-    faces: [u32; LANES],
+    /// Number of that face.
+    number: f32x8<S>,
 }
 
 /// Finds the nearest places from `place`.
@@ -29,7 +29,7 @@ pub(super) struct Nearest<S: Simd> {
 pub(super) fn nearest<S: Simd>(
     simd: S,
     place: Vec3x8<S>,
-    (triangles, points): (&[[u32; 3]], &[Vec3A]),
+    faces: &[[Block; 3]],
     known: &Known,
     is_closed: bool,
 ) -> Nearest<S> {
@@ -38,11 +38,10 @@ pub(super) fn nearest<S: Simd>(
     let mut squared = f32x8::splat(simd, f32::MAX);
     let mut steep = f32x8::splat(simd, -1.0);
     let (mut between, mut outward, mut weights) = (nothing, nothing, nothing);
-    let mut faces = [0; LANES];
-    for some in &known.faces {
-        let corners = corners(simd, some, (triangles, points));
-        let [a, b, c] = corners;
-        let at = on_triangle(place, corners);
+    let mut number = zero;
+    for (k, [a, b, c]) in faces.iter().enumerate() {
+        let (a, b, c) = (Vec3x8::load(simd, a), Vec3x8::load(simd, b), Vec3x8::load(simd, c));
+        let at = on_triangle(place, [a, b, c]);
         let way = place - (a * at.x + b * at.y + c * at.z);
         let normal = (b - a).cross(c - a);
         let length = way.dot(way);
@@ -56,12 +55,7 @@ pub(super) fn nearest<S: Simd>(
         between = way.or(is_nearer, between);
         outward = normal.or(is_nearer, outward);
         weights = at.or(is_nearer, weights);
-        let bits = is_nearer.to_bitmask();
-        for (i, face) in faces.iter_mut().enumerate() {
-            if bits >> i & 1 == 1 {
-                *face = some[i];
-            }
-        }
+        number = is_nearer.select(f32x8::splat(simd, k as f32), number);
     }
     let length = squared.sqrt();
     let one = f32x8::splat(simd, 1.0);
@@ -73,38 +67,36 @@ pub(super) fn nearest<S: Simd>(
         false => (length, direction),
     };
     let distance = distance + lane(simd, &known.beyond);
-    Nearest { seen: Seen { distance, normal }, weights, faces }
+    Nearest { seen: Seen { distance, normal }, weights, number }
 }
 
 impl<S: Simd> Nearest<S> {
     /// How far the nearest places have come within the substep, in the frame of the mesh, m.
     #[inline(always)]
-    pub fn way_from(&self, simd: S, triangles: &[[u32; 3]], [then, now]: [&[Vec3A]; 2]) -> Vec3x8<S> {
-        let place = |points| {
-            let [a, b, c] = corners(simd, &self.faces, (triangles, points));
-            a * self.weights.x + b * self.weights.y + c * self.weights.z
-        };
-        place(now) - place(then)
+    pub fn way_from(&self, simd: S, then: &[[Block; 3]], now: &[[Block; 3]]) -> Vec3x8<S> {
+        let mut way = Vec3x8::splat(simd, [0.0; 3]);
+        for (k, (then, now)) in then.iter().zip(now).enumerate() {
+            let come = |corner: usize| Vec3x8::load(simd, &now[corner]) - Vec3x8::load(simd, &then[corner]);
+            let face = come(0) * self.weights.x + come(1) * self.weights.y + come(2) * self.weights.z;
+            way = face.or(self.number.simd_eq(k as f32), way);
+        }
+        way
     }
 }
 
-/// The corners of eight faces.
+/// The highest of the planes above or below places.
 #[inline(always)]
-fn corners<S: Simd>(simd: S, faces: &[u32; LANES], (triangles, points): (&[[u32; 3]], &[Vec3A])) -> [Vec3x8<S>; 3] {
-    let mut rows = [[[0.0; 4]; LANES]; 3];
-    for (i, &face) in faces.iter().enumerate() {
-        let triangle = triangles[face as usize];
-        rows[0][i] = Vec4::from((points[triangle[0] as usize], 0.0)).to_array();
-        rows[1][i] = Vec4::from((points[triangle[1] as usize], 0.0)).to_array();
-        rows[2][i] = Vec4::from((points[triangle[2] as usize], 0.0)).to_array();
+pub(super) fn highest<S: Simd>(simd: S, place: Vec3x8<S>, planes: &[Plane]) -> Seen<f32x8<S>> {
+    let mut distance = f32x8::splat(simd, f32::MIN);
+    let mut normal = Vec3x8::splat(simd, [0.0; 3]);
+    for plane in planes {
+        let outward = Vec3x8::load(simd, &plane.normal);
+        let height = place.dot(outward) - lane(simd, &plane.offset);
+        let is_higher = height.simd_gt(distance);
+        distance = is_higher.select(height, distance);
+        normal = outward.or(is_higher, normal);
     }
-    [side_by_side(simd, &rows[0]), side_by_side(simd, &rows[1]), side_by_side(simd, &rows[2])]
-}
-
-#[inline(always)]
-fn side_by_side<S: Simd>(simd: S, [a, b, c, d, e, f, g, h]: &[[f32; 4]; LANES]) -> Vec3x8<S> {
-    let [x, y, z, _] = apart(simd, [a, b, c, d, e, f, g, h]);
-    Vec3x8 { x, y, z }
+    Seen { distance, normal }
 }
 
 /// Weights of the corners of a triangle at its place closest to `p`: its inside where `p` is above that, else the closest of
@@ -143,6 +135,7 @@ fn on_triangle<N: Number>(p: Vec3Wide<N>, [a, b, c]: [Vec3Wide<N>; 3]) -> Vec3Wi
 mod tests {
     use super::*;
     use crate::solver::contact::closest;
+    use bevy::math::Vec3A;
     use proptest::prelude::*;
 
     fn point() -> impl Strategy<Value = Vec3A> {

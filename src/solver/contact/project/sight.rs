@@ -14,11 +14,11 @@ use crate::solver::{
 
 /// An obstacle as the particles of a block see it, from places in its own frame (m).
 pub(in crate::solver::contact) trait Sight {
-    /// How often particles are brought to the surface: out of one part of it, they may come into another.
-    const PASSES: u32;
-
     /// Turns to a block, whose particles are at `local` places at the end of the substep. Says whether there is anything to see.
     fn turn_to<S: Simd>(&mut self, simd: S, block: usize, run: &Run, local: Vec3x8<S>) -> bool;
+
+    /// How often the block's particles are brought to the surface: out of one part of it, they may come into another.
+    fn passes(&self) -> u32;
 
     /// The surface as it is at the end of the substep.
     fn seen<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Seen<f32x8<S>>;
@@ -39,11 +39,14 @@ pub(in crate::solver::contact) trait Sight {
 pub(super) struct Whole<F>(pub F);
 
 impl<F: Field> Sight for Whole<F> {
-    const PASSES: u32 = 1;
-
     #[inline(always)]
     fn turn_to<S: Simd>(&mut self, _: S, _: usize, _: &Run, _: Vec3x8<S>) -> bool {
         true
+    }
+
+    #[inline(always)]
+    fn passes(&self) -> u32 {
+        1
     }
 
     #[inline(always)]

@@ -90,6 +90,16 @@ impl Walk {
 }
 
 impl Surface {
+    /// The leaf at the end of the way down that takes the second branch wherever `takes_second` of the numbers of both.
+    pub fn leaf_by(&self, takes_second: impl Fn(usize, usize) -> bool) -> u32 {
+        let mut node = 1;
+        while !self.is_leaf(node) {
+            let [first, second] = [2 * node, 2 * node + 1];
+            node = if takes_second(first as usize, second as usize) { second } else { first };
+        }
+        node
+    }
+
     /// Visits the triangles of the leaves whose boxes, and those of all patches that they are in, are near.
     pub fn for_each_near(
         &self,
