@@ -207,7 +207,7 @@ impl FacesInSight<'_> {
         let Self { mesh, points: [then, now], .. } = *self;
         let is_deformed = self.is_deformed;
         let known = &mut self.blocks[self.block];
-        let mut side_by_side = |places: &[Vec3A], into: &mut Vec<[Block; 3]>| {
+        let side_by_side = |places: &[Vec3A], into: &mut Vec<[Block; 3]>| {
             into.clear();
             into.extend(known.faces.iter().map(|faces| {
                 let mut corners = [Block::default(); 3];
@@ -240,7 +240,7 @@ impl Sight for FacesInSight<'_> {
         let is_free = lane(simd, &run.inverse_mass[block]).simd_gt(0.0);
         let is_off = is_free & off.dot(off).simd_gt(slack * slack);
         if self.span.end > span.end || is_off.any_true() {
-            self.look_around(run);
+            self.look_around(simd, run);
         } else if self.is_deformed {
             self.follow();
         }

@@ -1,6 +1,7 @@
 //! Which faces the particles of a block may come to meet.
 
 use bevy::math::{Isometry3d, Vec3A};
+use fearless_simd::{f32x8, prelude::*};
 
 use super::{FacesInSight, Known, Plane, Terrain, lane_of, set_lane};
 use crate::solver::{
@@ -10,7 +11,7 @@ use crate::solver::{
         surface::{Bounds, Places, Surface},
     },
     lanes::Run,
-    simd::{LANES, Lane},
+    simd::{LANES, Lane, Vec3x8, lane},
 };
 
 /// By how much particles may come off their ways before their block looks anew, m: this much, and a share of their ways. The
@@ -23,9 +24,6 @@ const FALL: f32 = 0.5;
 
 /// How far blocks look ahead at most, in lengths of the mesh's edges: the farther, the more they see that never comes near.
 const EDGES_AHEAD: f32 = 1.0;
-
-/// Particles are a patch, and are looked after together, where the box around them is no longer than so many boxes around one.
-const PATCH: f32 = 8.0;
 
 /// How far around what has no faces it is looked that there are none, in sizes of the region that a particle stays in: what is
 /// beside it is then known too.
@@ -71,16 +69,40 @@ pub(super) struct Clear {
     is_inside: bool,
 }
 
+/// Boxes around the regions of all particles.
+struct Boxes<S: Simd> {
+    low: Vec3x8<S>,
+    high: Vec3x8<S>,
+}
+
+impl<S: Simd> Boxes<S> {
+    /// Which of them meet another box, a bit each.
+    #[inline(always)]
+    fn meet(&self, Bounds { low: from, high: to }: &Bounds) -> u64 {
+        let Self { low, high } = self;
+        let is_below = low.x.simd_le(to.x) & low.y.simd_le(to.y) & low.z.simd_le(to.z);
+        let is_above = high.x.simd_ge(from.x) & high.y.simd_ge(from.y) & high.z.simd_ge(from.z);
+        (is_below & is_above).to_bitmask()
+    }
+}
+
 impl FacesInSight<'_> {
     /// Finds out which way the particles of the block are on, and what they may come to meet there.
     #[cold]
     #[inline(never)]
-    pub(super) fn look_around(&mut self, run: &Run) {
+    pub(super) fn look_around<S: Simd>(&mut self, simd: S, run: &Run) {
         let is_free = run.inverse_mass[self.block].map(|w| w > 0.0);
         let regions = self.expect(run, is_free);
-        self.find(&regions);
+        simd.vectorize(
+            #[inline(always)]
+            || self.find(simd, &regions),
+        );
         self.find_inside(&regions);
         self.know();
+        simd.vectorize(
+            #[inline(always)]
+            || self.survey(simd),
+        );
     }
 
     /// Notes on which ways the particles are, and returns the regions of those that are free.
@@ -115,11 +137,10 @@ impl FacesInSight<'_> {
     }
 
     /// Finds the faces that come near to regions.
-    fn find(&mut self, regions: &[Option<Region>; LANES]) {
-        let left = {
-            let known = &self.blocks[self.block].span;
-            (known.end - known.start) / (self.span.end - self.span.start)
-        };
+    #[inline(always)]
+    fn find<S: Simd>(&mut self, simd: S, regions: &[Option<Region>; LANES]) {
+        let Known { span: known, .. } = self.known();
+        let left = (known.end - known.start) / (self.span.end - self.span.start);
         let Self { look: Look { found, .. }, mesh: TriangleMesh { surface, .. }, points: [points, now], places, .. } = self;
         found.iter_mut().for_each(Vec::clear);
         // How far a face goes, of a mesh that moves within its frame.
@@ -130,36 +151,35 @@ impl FacesInSight<'_> {
         };
         let mut farthest: f32 = 0.0;
         let distance = self.passage.distance;
-        let boxes = regions.map(|region| match region {
-            Some(Region { centre, radius }) => Bounds::around([centre]).grown(radius + distance),
-            None => Bounds::NOTHING,
-        });
-        let whole = boxes.iter().copied().fold(Bounds::NOTHING, Bounds::union);
-        let widest = regions.iter().flatten().map(|region| region.radius + distance).fold(0.0, f32::max);
-        let edge = widest.max(surface.mean_edge);
-        let is_patch = (whole.high - whole.low).max_element() <= PATCH * 2.0 * edge;
-        let mut meet = |lanes: core::ops::Range<usize>, face: usize| {
-            for i in lanes {
-                let Some(Region { centre, radius }) = regions[i] else { continue };
-                if !boxes[i].meets(&places.of_triangles[face]) {
-                    continue;
-                }
-                let corners = surface.triangles[face].map(|k| points[k as usize]);
-                let length = centre.distance(closest::place_on_triangle(centre, corners));
-                let way = way_of(face);
-                if length <= distance + radius + way {
-                    farthest = farthest.max(way);
-                    found[i].push((length, face as u32));
-                }
-            }
-        };
-        if is_patch {
-            surface.for_each_near(places, |bounds| bounds.meets(&whole), |face| meet(0..LANES, face));
-        } else {
-            for (i, bounds) in boxes.iter().enumerate().filter(|&(i, _)| regions[i].is_some()) {
-                surface.for_each_near(places, |other| bounds.meets(other), |face| meet(i..i + 1, face));
+        let (mut low, mut high) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
+        for (i, region) in regions.iter().enumerate() {
+            if let Some(Region { centre, radius }) = region {
+                set_lane(&mut low, i, *centre - *radius - distance);
+                set_lane(&mut high, i, *centre + *radius + distance);
             }
         }
+        let boxes = Boxes { low: Vec3x8::load(simd, &low), high: Vec3x8::load(simd, &high) };
+        surface.for_each_near(
+            places,
+            #[inline(always)]
+            |bounds| boxes.meet(bounds) != 0,
+            #[inline(always)]
+            |face| {
+                let mut lanes = boxes.meet(&places.of_triangles[face]);
+                while lanes != 0 {
+                    let i = lanes.trailing_zeros() as usize;
+                    lanes &= lanes - 1;
+                    let Some(Region { centre, radius }) = regions[i] else { continue };
+                    let corners = surface.triangles[face].map(|k| points[k as usize]);
+                    let length = centre.distance(closest::place_on_triangle(centre, corners));
+                    let way = way_of(face);
+                    if length <= distance + radius + way {
+                        farthest = farthest.max(way);
+                        found[i].push((length, face as u32));
+                    }
+                }
+            },
+        );
         // What is so much farther than the nearest one never gets to be the nearest.
         for (found, region) in found.iter_mut().zip(regions) {
             let Some(Region { radius, .. }) = region else { continue };
@@ -212,42 +232,49 @@ impl FacesInSight<'_> {
             core::array::from_fn(|i| found[i].get(k).or(found[i].first()).map_or(0, |&(_, face)| face))
         }));
         self.follow();
-        self.survey();
     }
 
     /// Finds out how the faces are to each other.
-    fn survey(&mut self) {
-        let mesh = self.mesh;
-        let known = &mut self.blocks[self.block];
-        known.terrain = Terrain::Rough;
-        known.planes.clear();
-        if !mesh.is_closed || self.is_deformed {
+    #[inline(always)]
+    fn survey<S: Simd>(&mut self, simd: S) {
+        let is_seen_from_one_side = self.mesh.is_closed && !self.is_deformed;
+        let Known { now, planes, terrain, beyond, .. } = &mut self.blocks[self.block];
+        *terrain = Terrain::Rough;
+        planes.clear();
+        if !is_seen_from_one_side {
             return;
         }
-        let (mut is_convex, mut is_even) = (true, true);
-        let planes = &mut known.planes;
-        for corners in &known.now {
-            let mut plane = Plane::default();
-            for i in 0..LANES {
-                let [a, b, c] = [0, 1, 2].map(|k| lane_of(&corners[k], i));
-                let normal = (b - a).cross(c - a).normalize_or_zero();
-                set_lane(&mut plane.normal, i, normal);
-                plane.offset[i] = normal.dot(a);
-                for (other, of_other) in planes.iter().zip(&known.now) {
-                    let outward = lane_of(&other.normal, i);
-                    is_convex &= [a, b, c].iter().all(|&p| outward.dot(p) - other.offset[i] <= ROUNDING * a.distance(b));
-                    is_convex &=
-                        of_other.iter().all(|p| normal.dot(lane_of(p, i)) - plane.offset[i] <= ROUNDING * a.distance(b));
-                    is_even &= normal.dot(outward) >= EVEN;
-                }
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let mut highest = zero;
+        let mut flattest = one;
+        for (k, [a, b, c]) in now.iter().enumerate() {
+            let corners = [Vec3x8::load(simd, a), Vec3x8::load(simd, b), Vec3x8::load(simd, c)];
+            let [a, b, c] = corners;
+            let outward = (b - a).cross(c - a);
+            let outward = outward * (one / outward.dot(outward).sqrt());
+            let offset = outward.dot(a);
+            let rounding = (b - a).dot(b - a).sqrt() * ROUNDING;
+            for (other, [p, q, r]) in planes.iter().zip(&now[..k]) {
+                let (normal, height) = (Vec3x8::load(simd, &other.normal), lane(simd, &other.offset));
+                flattest = flattest.min(normal.dot(outward));
+                let above = normal.dot(a).max(normal.dot(b)).max(normal.dot(c)) - height;
+                let (p, q, r) = (Vec3x8::load(simd, p), Vec3x8::load(simd, q), Vec3x8::load(simd, r));
+                let other_above = outward.dot(p).max(outward.dot(q)).max(outward.dot(r)) - offset;
+                highest = highest.max(above.max(other_above) - rounding);
             }
+            let mut plane = Plane { offset: offset.into(), ..Plane::default() };
+            outward.store(&mut plane.normal);
             planes.push(plane);
         }
         // Those that have no faces are far from all.
-        for (i, _) in known.beyond.iter().enumerate().filter(|&(_, &beyond)| beyond > 0.0) {
-            planes.iter_mut().for_each(|plane| plane.offset[i] = -FAR);
+        let far = lane(simd, beyond);
+        for plane in planes {
+            plane.offset = (lane(simd, &plane.offset) - far).into();
         }
-        known.terrain = match (is_convex, is_even) {
+        let has_faces = far.simd_le(0.0);
+        let is_convex = !(has_faces & highest.simd_gt(0.0)).any_true();
+        let is_even = !(has_faces & flattest.simd_lt(EVEN)).any_true();
+        *terrain = match (is_convex, is_even) {
             (true, true) => Terrain::Even,
             (true, false) => Terrain::Convex,
             _ => Terrain::Rough,

@@ -101,6 +101,7 @@ impl Surface {
     }
 
     /// Visits the triangles of the leaves whose boxes, and those of all patches that they are in, are near.
+    #[inline(always)]
     pub fn for_each_near(
         &self,
         places: &Places,
