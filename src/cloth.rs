@@ -53,7 +53,7 @@ pub struct Cloth {
     pub max_strain: f32,
     /// Substeps per step, at least 1. `None` for as many as [`max_strain`](Self::max_strain) needs, and at least 8 near
     /// obstacles, in a hand and without tethers; half as many more with [`SelfCollision::Robust`], 16 at least; three times
-    /// as many, 32 at least, near solids with edges and tips, and thin ones. With [`ClothSolver::Xpbd`] for 8.
+    /// as many, 32 at least, near solids with edges, and thin ones, and twice that near tips. With [`ClothSolver::Xpbd`] for 8.
     pub substeps: Option<u32>,
     /// Iterations of the coarse levels of [`ClothSolver::Strands`] in each substep, of which only cloth with tethers has
     /// any. `None` for those that [`max_strain`](Self::max_strain) or the [`substeps`](Self::substeps) need, an empty list

@@ -18,7 +18,7 @@ mod faces;
 mod inside;
 mod near;
 mod number;
-mod outline;
+pub(super) mod outline;
 pub(super) mod pair;
 mod project;
 mod search;

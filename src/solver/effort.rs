@@ -11,7 +11,8 @@ pub struct Effort {
     pub levels: Vec<LevelPass>,
     /// Substeps where more is at stake: something is near that the cloth may touch, a hand holds it, or no tethers do. Unless
     /// they are fixed, it takes half as many more where its triangles and edges meet those of cloth, and 16 at least; three
-    /// times as many near solids with edges or tips, or thin ones, and 32 at least.
+    /// times as many near solids with edges, or thin ones, and 32 at least; and twice that where they end in a tip, or fit
+    /// through a cell.
     pub careful_substeps: u32,
     /// Levels of those.
     pub careful_levels: Vec<LevelPass>,
@@ -27,8 +28,10 @@ pub(super) enum Care {
     Some,
     /// Its triangles and edges may meet those of cloth: what passes through is hard to bring back.
     Robust,
-    /// Something that is sharp is near, as a solid; so many substeps would take it past half an edge in each.
+    /// A solid with edges is near; so many substeps would take it past half an edge of the cloth in each.
     Sharp(f32),
+    /// One that ends in a tip, or fits through the cloth, is near.
+    Tip,
 }
 
 impl Effort {
@@ -43,7 +46,8 @@ impl Effort {
     const LEAST_WITH_ROBUST: f32 = 16.0;
     const MORE_WITH_ROBUST: f32 = 1.5;
 
-    /// With fewer, a needle and the corner of a box come through the triangles of a cloth that falls on them from 0.25 m.
+    /// With fewer, the corner of a box comes through the triangles of a cloth that falls on it from 0.25 m; with fewer than twice
+    /// as many, the tip of a cone, and balls as small as a cell at 30 m/s.
     const LEAST_WITH_SHARP: f32 = 32.0;
     const MORE_WITH_SHARP: f32 = 3.0;
 
@@ -103,16 +107,15 @@ impl Effort {
         let factor = if self.follows_time_step { dt * 60.0 } else { 1.0 };
         let (substeps, levels) = match care {
             Care::None => (self.substeps, &self.levels),
-            Care::Some | Care::Robust | Care::Sharp(_) => (self.careful_substeps, &self.careful_levels),
+            Care::Some | Care::Robust | Care::Sharp(_) | Care::Tip => (self.careful_substeps, &self.careful_levels),
         };
+        let for_edges = (Self::MORE_WITH_SHARP * substeps as f32).max(Self::LEAST_WITH_SHARP);
         let substeps = match care {
             _ if !self.follows_time_step => substeps as f32,
             Care::None | Care::Some => substeps as f32,
             Care::Robust => (Self::MORE_WITH_ROBUST * substeps as f32).max(Self::LEAST_WITH_ROBUST),
-            Care::Sharp(wanted) => {
-                let least = (Self::MORE_WITH_SHARP * substeps as f32).max(Self::LEAST_WITH_SHARP);
-                (wanted / factor).clamp(least, 2.0 * least)
-            }
+            Care::Sharp(wanted) => (wanted / factor).clamp(for_edges, 2.0 * for_edges),
+            Care::Tip => 2.0 * for_edges,
         };
         // A step of 1/60 s isn't longer than that by a rounding.
         ((substeps * factor - 0.01).ceil().max(1.0) as u32, levels)

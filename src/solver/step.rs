@@ -9,6 +9,7 @@ use super::{
     constraint::{anchor, grab, weave::Last},
     contact::{
         self, Faces,
+        outline::Sharp,
         touch::{self, Touch},
     },
     effort::Care,
@@ -149,12 +150,12 @@ impl<'a> Plan<'a> {
         let touches = ctx.self_collision != SelfCollision::Off;
         let is_mounted = !ctx.mounted.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
-        let for_sharp = touch::substeps_for_sharp(near, particles, topology, ctx, dt);
-        let care = match (ctx.self_collision, with_care) {
-            _ if for_sharp > 0.0 => Care::Sharp(for_sharp),
-            (SelfCollision::Robust, _) => Care::Robust,
-            (_, true) => Care::Some,
-            (_, false) => Care::None,
+        let care = match (touch::sharpest(near, particles, topology, ctx, dt), ctx.self_collision) {
+            (Some((Sharp::Tip, _)), _) => Care::Tip,
+            (Some((Sharp::Edge, wanted)), _) => Care::Sharp(wanted),
+            (None, SelfCollision::Robust) => Care::Robust,
+            (None, _) if with_care => Care::Some,
+            (None, _) => Care::None,
         };
         let (wanted, levels) = ctx.effort.of_step(care, dt);
         // Levels move what hangs on a body without its weight on the body.

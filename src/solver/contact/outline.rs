@@ -30,7 +30,7 @@ impl Outline {
     /// Follows `solid`, as `tightness` asks for.
     pub fn of(solid: &Solid, tightness: Tightness) -> Self {
         let mut outline = Drawing::default();
-        if !tightness.is_pierced_by(solid) {
+        if tightness.pierced_by(solid).is_none() {
             return outline.finish();
         }
         match *solid {
@@ -73,19 +73,37 @@ pub struct Tightness {
     pub sink: f32,
 }
 
+/// What comes between the particles of a cloth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Sharp {
+    /// An edge, or what is so round that a triangle's inside sinks into it.
+    Edge,
+    /// What fits through a stretched cell, or ends in that.
+    Tip,
+}
+
 impl Tightness {
-    /// Whether a solid has anything that comes between particles.
-    pub fn is_pierced_by(self, solid: &Solid) -> bool {
+    /// What of a solid comes between particles.
+    pub fn pierced_by(self, solid: &Solid) -> Option<Sharp> {
         // The sine of half a right angle is that by which edges fall off to both sides.
         let is_caught = core::f32::consts::FRAC_1_SQRT_2 * self.edge / 2.0 > self.sink;
         match *solid {
-            Solid::Sphere(Sphere { radius }) | Solid::Capsule(Capsule3d { radius, .. }) => self.is_thin(radius),
+            Solid::Sphere(Sphere { radius }) | Solid::Capsule(Capsule3d { radius, .. }) => self.pierced_by_ball(radius),
             Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, .. }) => {
-                self.is_thin(radius_top.min(radius_bottom))
+                self.pierced_by_ball(radius_top.min(radius_bottom))
             }
-            Solid::Cuboid(_) | Solid::Cylinder(_) | Solid::Cone(_) => is_caught,
-            Solid::HalfSpace(_) => false,
+            Solid::Cylinder(Cylinder { radius, .. }) => {
+                self.pierced_by_ball(radius).or(is_caught.then_some(Sharp::Edge))
+            }
+            Solid::Cuboid(_) => is_caught.then_some(Sharp::Edge),
+            Solid::Cone(_) => is_caught.then_some(Sharp::Tip),
+            Solid::HalfSpace(_) => None,
         }
+    }
+
+    fn pierced_by_ball(self, radius: f32) -> Option<Sharp> {
+        let fits = radius + self.distance < self.edge;
+        self.is_thin(radius).then_some(if fits { Sharp::Tip } else { Sharp::Edge })
     }
 
     /// Whether a chord of the cloth sinks too deep into what is round.

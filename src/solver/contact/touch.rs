@@ -8,6 +8,7 @@ use core::ops::Range;
 use bevy::math::Vec3A;
 
 use super::{
+    outline::Sharp,
     pair::{Pair, Points},
     search::Ways,
     surface::{Places, Surface, Walk},
@@ -62,23 +63,25 @@ fn sink(ctx: &StepContext) -> f32 {
     ctx.margin.max(SINK).max(SINK_OF_DISTANCE * ctx.contact_distance())
 }
 
-/// Into how many substeps to cut a step of `dt` seconds so that nothing sharp among the obstacles `near` goes by more than half an
-/// edge of a cloth in one of them; 0 where nothing sharp is.
-pub fn substeps_for_sharp<'a>(
+/// What is sharpest among the obstacles `near` a cloth, and into how many substeps to cut a step of `dt` seconds so that nothing
+/// sharp goes by more than half an edge of the cloth in one of them.
+pub fn sharpest<'a>(
     near: impl Iterator<Item = &'a Obstacle>,
     particles: &Particles,
     topology: &Topology,
     ctx: &StepContext,
     dt: f32,
-) -> f32 {
-    let sharp = near.filter(|obstacle| match &obstacle.shape {
-        Shape::Solid(solid) => outlines::tightness(obstacle, topology, ctx).is_pierced_by(solid),
-        Shape::Mesh(_) => false,
+) -> Option<(Sharp, f32)> {
+    let sharp = near.filter_map(|obstacle| match &obstacle.shape {
+        Shape::Solid(solid) => {
+            let sharp = outlines::tightness(obstacle, topology, ctx).pierced_by(solid)?;
+            Some((sharp, obstacle.start.translation.distance(obstacle.end.translation)))
+        }
+        Shape::Mesh(_) => None,
     });
-    let ways = sharp.map(|obstacle| obstacle.start.translation.distance(obstacle.end.translation));
-    let Some(way) = ways.reduce(f32::max) else { return 0.0 };
+    let (sharp, way) = sharp.reduce(|(one, way), (other, far)| (one.max(other), way.max(far)))?;
     let speed = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
-    (way + speed * dt) / (0.5 * topology.surface().mean_edge)
+    Some((sharp, (way + speed * dt) / (0.5 * topology.surface().mean_edge)))
 }
 
 /// What of a cloth matters here.
