@@ -6,8 +6,9 @@ use bevy::math::{Isometry3d, Quat, Vec3A};
 use fearless_simd::{dispatch, f32x8, mask32x8, prelude::*};
 
 use super::{
-    Bodies, Shape, Solid, faces,
+    Bodies, Shape, Solid,
     course::{Course, Moving, Shifted, Turned},
+    faces,
     near::{Reachable, STRETCH},
     sweep::{self, Passage},
 };
@@ -57,7 +58,8 @@ pub(in crate::solver) fn project(scratch: &mut Scratch, ctx: &StepContext, span:
             Shape::Mesh(mesh) => {
                 past.passage.distance = passage.distance.max(faces::LEAST + it.rounding);
                 let (moving, passage) = ((&*past.bodies, obstacle), past.passage);
-                let mut sight = known[obstacle].sight(mesh, ctx, moving, &passage, span.clone(), past.run.position.len());
+                let mut sight =
+                    known[obstacle].sight(mesh, ctx, moving, &passage, span.clone(), past.run.position.len());
                 past.go(&mut sight)
             }
         };

@@ -48,7 +48,8 @@ pub(super) struct Look {
 
 /// Boxes around the ways of triangles whose points go from one place to another.
 pub(super) fn follow(places: &mut Places, surface: &Surface, from: &[Vec3A], to: &[Vec3A]) {
-    let bounds = |triangle: [u32; 3]| Bounds::around(triangle.into_iter().flat_map(|i| [from[i as usize], to[i as usize]]));
+    let bounds =
+        |triangle: [u32; 3]| Bounds::around(triangle.into_iter().flat_map(|i| [from[i as usize], to[i as usize]]));
     places.follow(surface, bounds, None::<fn(_) -> _>);
 }
 
@@ -141,12 +142,15 @@ impl FacesInSight<'_> {
     fn find<S: Simd>(&mut self, simd: S, regions: &[Option<Region>; LANES]) {
         let Known { span: known, .. } = self.known();
         let left = (known.end - known.start) / (self.span.end - self.span.start);
-        let Self { look: Look { found, .. }, mesh: TriangleMesh { surface, .. }, points: [points, now], places, .. } = self;
+        let Self {
+            look: Look { found, .. }, mesh: TriangleMesh { surface, .. }, points: [points, now], places, ..
+        } = self;
         found.iter_mut().for_each(Vec::clear);
         // How far a face goes, of a mesh that moves within its frame.
         let is_deformed = self.is_deformed;
         let way_of = |face: usize| {
-            let ways = surface.triangles[face].into_iter().map(|i| points[i as usize].distance_squared(now[i as usize]));
+            let ways =
+                surface.triangles[face].into_iter().map(|i| points[i as usize].distance_squared(now[i as usize]));
             if is_deformed { ways.fold(0.0, f32::max).sqrt() * left } else { 0.0 }
         };
         let mut farthest: f32 = 0.0;
@@ -228,9 +232,10 @@ impl FacesInSight<'_> {
             *beyond = FAR;
         }
         faces.clear();
-        faces.extend((0..most).map(|k| {
-            core::array::from_fn(|i| found[i].get(k).or(found[i].first()).map_or(0, |&(_, face)| face))
-        }));
+        faces.extend(
+            (0..most)
+                .map(|k| core::array::from_fn(|i| found[i].get(k).or(found[i].first()).map_or(0, |&(_, face)| face))),
+        );
         self.follow();
     }
 

@@ -102,12 +102,7 @@ impl Surface {
 
     /// Visits the triangles of the leaves whose boxes, and those of all patches that they are in, are near.
     #[inline(always)]
-    pub fn for_each_near(
-        &self,
-        places: &Places,
-        is_near: impl Fn(&Bounds) -> bool,
-        mut visit: impl FnMut(usize),
-    ) {
+    pub fn for_each_near(&self, places: &Places, is_near: impl Fn(&Bounds) -> bool, mut visit: impl FnMut(usize)) {
         // Down to the next leaf, then on to the next branch: without a list of what is left.
         let last = self.node_count() as u32;
         let mut node = 1;

@@ -102,7 +102,13 @@ impl AtObstacle {
     }
 
     /// Adds what of a cloth and obstacle `i` of it may meet.
-    pub fn search(&mut self, at: &Approach, i: usize, walk: &mut Walk, (fixed, pairs): (&mut Vec<Fixed>, &mut Vec<Pair>)) {
+    pub fn search(
+        &mut self,
+        at: &Approach,
+        i: usize,
+        walk: &mut Walk,
+        (fixed, pairs): (&mut Vec<Fixed>, &mut Vec<Pair>),
+    ) {
         let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
         let surface = cloth.surface();
         let distance = distance_to(obstacle, cloth.ctx);
