@@ -29,9 +29,9 @@ pub(super) enum Care {
     /// Its triangles and edges may meet those of cloth: what passes through is hard to bring back.
     Robust,
     /// A solid with edges is near; so many substeps would take it past half an edge of the cloth in each.
-    Sharp(f32),
-    /// One that ends in a tip, or fits through the cloth, is near.
-    Tip,
+    Edge(f32),
+    /// One is near that ends in a tip, or fits through a stretched cell; so many substeps as of an edge.
+    Tip(f32),
 }
 
 impl Effort {
@@ -107,15 +107,15 @@ impl Effort {
         let factor = if self.follows_time_step { dt * 60.0 } else { 1.0 };
         let (substeps, levels) = match care {
             Care::None => (self.substeps, &self.levels),
-            Care::Some | Care::Robust | Care::Sharp(_) | Care::Tip => (self.careful_substeps, &self.careful_levels),
+            Care::Some | Care::Robust | Care::Edge(_) | Care::Tip(_) => (self.careful_substeps, &self.careful_levels),
         };
         let for_edges = (Self::MORE_WITH_SHARP * substeps as f32).max(Self::LEAST_WITH_SHARP);
         let substeps = match care {
             _ if !self.follows_time_step => substeps as f32,
             Care::None | Care::Some => substeps as f32,
             Care::Robust => (Self::MORE_WITH_ROBUST * substeps as f32).max(Self::LEAST_WITH_ROBUST),
-            Care::Sharp(wanted) => (wanted / factor).clamp(for_edges, 2.0 * for_edges),
-            Care::Tip => 2.0 * for_edges,
+            Care::Edge(wanted) => (wanted / factor).clamp(for_edges, 2.0 * for_edges),
+            Care::Tip(wanted) => 2.0 * (wanted / factor).clamp(for_edges, 2.0 * for_edges),
         };
         // A step of 1/60 s isn't longer than that by a rounding.
         ((substeps * factor - 0.01).ceil().max(1.0) as u32, levels)

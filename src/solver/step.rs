@@ -151,8 +151,8 @@ impl<'a> Plan<'a> {
         let is_mounted = !ctx.mounted.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
         let care = match (touch::sharpest(near, particles, topology, ctx, dt), ctx.self_collision) {
-            (Some((Sharp::Tip, _)), _) => Care::Tip,
-            (Some((Sharp::Edge, wanted)), _) => Care::Sharp(wanted),
+            (Some((Sharp::Tip, wanted)), _) => Care::Tip(wanted),
+            (Some((Sharp::Edge, wanted)), _) => Care::Edge(wanted),
             (None, SelfCollision::Robust) => Care::Robust,
             (None, _) if with_care => Care::Some,
             (None, _) => Care::None,
