@@ -47,7 +47,7 @@ impl Effort {
     const MORE_WITH_ROBUST: f32 = 1.5;
 
     /// With fewer, the corner of a box comes through the triangles of a cloth that falls on it from 0.25 m; with fewer than twice
-    /// as many, the tip of a cone, and balls as small as a cell at 30 m/s.
+    /// as many, the tip of a cone, and a ball at 30 m/s that fits through a cell.
     const LEAST_WITH_SHARP: f32 = 32.0;
     const MORE_WITH_SHARP: f32 = 3.0;
 

@@ -64,6 +64,14 @@ fn what_is_sharp_comes_through_no_triangle_with_substeps_enough() {
 }
 
 #[test]
+fn what_is_sharp_comes_through_no_triangle_by_default() {
+    for sharp in [Sharp::Needle, Sharp::Corner, Sharp::Cone] {
+        let watched = watch_outside(needle::needle(&alone(16, 120), sharp));
+        assert_eq!(watched.worst.fault, 0.0, "{sharp:?}: {watched:?}");
+    }
+}
+
+#[test]
 fn what_is_sharp_harms_nothing_where_it_comes_through() {
     for sharp in [Sharp::Needle, Sharp::Corner, Sharp::Cone] {
         let watched = watch_outside(needle::needle(&alone(16, 150), sharp));
