@@ -4,7 +4,7 @@
 //! particles are on the ways that it took them to be on. Then it looks for faces anew.
 
 use core::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 use bevy::math::{Isometry3d, Vec3A};
 use fearless_simd::{f32x8, prelude::*};
@@ -36,7 +36,7 @@ pub(super) const LEAST: f32 = 0.0002;
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Faces {
     /// The mesh that the blocks know.
-    mesh: Option<Arc<TriangleMesh>>,
+    mesh: Weak<TriangleMesh>,
     blocks: Vec<Known>,
     look: Look,
     /// Where the points of a mesh that moves within its frame are when the substep begins, and when it ends, m.
@@ -112,16 +112,15 @@ impl Faces {
     fn begin_at(&mut self, MeshShape { mesh, deformed }: &MeshShape, block_count: usize) {
         self.blocks.resize_with(block_count, Known::default);
         // What is clear of a mesh stays so, as long as the mesh stays the same.
-        let is_same = deformed.is_none() && self.mesh.as_ref().is_some_and(|known| Arc::ptr_eq(known, mesh));
+        let met = Arc::downgrade(mesh);
+        let is_same = deformed.is_none() && self.mesh.ptr_eq(&met);
         for known in &mut self.blocks {
             known.span = 0.0..0.0;
             if !is_same {
                 known.clear = [Clear::default(); LANES];
             }
         }
-        if !is_same {
-            self.mesh = Some(mesh.clone());
-        }
+        self.mesh = met;
     }
 
     /// What is to be seen of a mesh in the part `span` of the step.
