@@ -27,7 +27,7 @@ mod look;
 mod nearest;
 mod way;
 
-use look::{Clear, Look};
+use look::{Clear, Look, Sought};
 
 /// Distance that cloth keeps from triangles at least, m. Nearer, rounding decides which side it is on.
 pub(super) const LEAST: f32 = 0.0002;
@@ -59,31 +59,24 @@ struct Known {
     span: Range<f32>,
     /// By how much particles may come off their ways, m.
     slack: f32,
+    /// What it has looked for last, on this mesh.
+    sought: Option<Sought>,
     /// Faces of all particles; where one has fewer than another, the first of them again.
     faces: Vec<[u32; LANES]>,
     /// Their corners when the substep ends, and, of a mesh that moves within its frame, when it begins, m.
     now: Vec<[Block; 3]>,
     then: Vec<[Block; 3]>,
-    /// How the faces of each particle are to each other.
-    terrain: Terrain,
-    /// Their planes, where that is what counts.
+    /// How often particles are brought to the surface: out of one face, they may come into another.
+    passes: u32,
+    /// The planes of the faces, where these are flat to each other; none elsewhere. Those of faces that form a hollow are turned
+    /// over.
     planes: Vec<Plane>,
+    /// 1, or -1 where the faces form a hollow.
+    side: Lane,
     /// Where each particle has last been seen far from all faces.
     clear: [Clear; LANES],
     /// By how much farther a particle is taken to be, m: those that have no faces are far from all.
     beyond: Lane,
-}
-
-/// How faces are to each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Terrain {
-    /// Anyhow: out of one, a particle may come into another.
-    #[default]
-    Rough,
-    /// None rises above another.
-    Convex,
-    /// And they are so flat to each other that the highest of their planes is the surface.
-    Even,
 }
 
 /// Planes, eight at a time: all places p with n · p = c.
@@ -118,6 +111,7 @@ impl Faces {
             known.span = 0.0..0.0;
             if !is_same {
                 known.clear = [Clear::default(); LANES];
+                known.sought = None;
             }
         }
         self.mesh = met;
@@ -227,7 +221,7 @@ impl FacesInSight<'_> {
 
 impl Sight for FacesInSight<'_> {
     fn passes(&self) -> u32 {
-        if self.known().terrain == Terrain::Rough { 3 } else { 1 }
+        self.known().passes
     }
 
     #[inline(always)]
@@ -248,10 +242,11 @@ impl Sight for FacesInSight<'_> {
 
     #[inline(always)]
     fn seen<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Seen<f32x8<S>> {
-        let known = self.known();
-        match known.terrain {
-            Terrain::Even => nearest::highest(simd, local, &known.planes),
-            _ => nearest::nearest(simd, local, &known.now, known, self.mesh.is_closed).seen,
+        let (known, is_closed) = (self.known(), self.mesh.is_closed);
+        if known.planes.is_empty() {
+            nearest::nearest(simd, local, &known.now, known, is_closed).seen
+        } else {
+            nearest::highest(simd, local, known, is_closed)
         }
     }
 

@@ -3,7 +3,7 @@
 use bevy::math::{Isometry3d, Vec3A};
 use fearless_simd::{f32x8, prelude::*};
 
-use super::{FacesInSight, Known, Plane, Terrain, lane_of, set_lane};
+use super::{FacesInSight, Known, Plane, lane_of, set_lane};
 use crate::solver::{
     contact::{
         closest, inside,
@@ -29,9 +29,15 @@ const EDGES_AHEAD: f32 = 1.0;
 /// beside it is then known too.
 const CLEAR: f32 = 32.0;
 
+/// Width of the grid that regions are rounded to, m: what rests stays in one region from step to step, and needs no new look.
+const GRID: f32 = 0.002;
+
 /// Cosine of the angle between faces up to which the highest of their planes is the surface: beyond the edge between them, that
 /// keeps particles off by 3 % of their distance more at most.
 const EVEN: f32 = 0.9;
+
+/// How often particles are brought to a surface that isn't convex, at most.
+const PASSES: u32 = 3;
 
 /// By which share of its size a face may rise above another by rounding alone.
 const ROUNDING: f32 = 1e-3;
@@ -54,10 +60,26 @@ pub(super) fn follow(places: &mut Places, surface: &Surface, from: &[Vec3A], to:
 }
 
 /// The region that a particle stays in, in the frame of the mesh, m.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Region {
     centre: Vec3A,
     radius: f32,
+}
+
+impl Region {
+    /// One of the grid that it lies in.
+    fn rounded(self) -> Self {
+        let centre = (self.centre / GRID).round() * GRID;
+        let radius = ((self.radius + self.centre.distance(centre)) / GRID).ceil() * GRID;
+        Self { centre, radius }
+    }
+}
+
+/// What a block has looked for: the regions of those of its particles that are free, and how far around them, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sought {
+    regions: [Option<Region>; LANES],
+    distance: f32,
 }
 
 /// A ball that no face comes into, in the frame of the mesh.
@@ -94,6 +116,11 @@ impl FacesInSight<'_> {
     pub(super) fn look_around<S: Simd>(&mut self, simd: S, run: &Run) {
         let is_free = run.inverse_mass[self.block].map(|w| w > 0.0);
         let regions = self.expect(run, is_free);
+        let sought = Some(Sought { regions, distance: self.passage.distance });
+        if !self.is_deformed && self.known().sought == sought {
+            return;
+        }
+        self.blocks[self.block].sought = sought;
         simd.vectorize(
             #[inline(always)]
             || self.find(simd, &regions),
@@ -132,7 +159,7 @@ impl FacesInSight<'_> {
                 let (from, half) = (lane_of(&known.start, i), lane_of(&known.way, i) * (0.5 * over));
                 let centre = from + half;
                 let place = now.transform_point(lane_of(&run.position[block], i));
-                Region { centre, radius: half.length().max(place.distance(centre)) + known.slack }
+                Region { centre, radius: half.length().max(place.distance(centre)) + known.slack }.rounded()
             })
         })
     }
@@ -239,18 +266,19 @@ impl FacesInSight<'_> {
         self.follow();
     }
 
-    /// Finds out how the faces are to each other.
+    /// Finds out how the faces are to each other: whether the surface is the highest of their planes, or the lowest.
     #[inline(always)]
     fn survey<S: Simd>(&mut self, simd: S) {
-        let is_seen_from_one_side = self.mesh.is_closed && !self.is_deformed;
-        let Known { now, planes, terrain, beyond, .. } = &mut self.blocks[self.block];
-        *terrain = Terrain::Rough;
+        let is_closed = self.mesh.is_closed;
+        let has_border = self.has_border();
+        let Known { now, planes, side, passes, beyond, .. } = &mut self.blocks[self.block];
+        *passes = PASSES;
         planes.clear();
-        if !is_seen_from_one_side {
+        if self.is_deformed || has_border {
             return;
         }
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let mut highest = zero;
+        let (mut highest, mut lowest) = (zero, zero);
         let mut flattest = one;
         for (k, [a, b, c]) in now.iter().enumerate() {
             let corners = [Vec3x8::load(simd, a), Vec3x8::load(simd, b), Vec3x8::load(simd, c)];
@@ -262,27 +290,44 @@ impl FacesInSight<'_> {
             for (other, [p, q, r]) in planes.iter().zip(&now[..k]) {
                 let (normal, height) = (Vec3x8::load(simd, &other.normal), lane(simd, &other.offset));
                 flattest = flattest.min(normal.dot(outward));
-                let above = normal.dot(a).max(normal.dot(b)).max(normal.dot(c)) - height;
                 let (p, q, r) = (Vec3x8::load(simd, p), Vec3x8::load(simd, q), Vec3x8::load(simd, r));
-                let other_above = outward.dot(p).max(outward.dot(q)).max(outward.dot(r)) - offset;
-                highest = highest.max(above.max(other_above) - rounding);
+                let (above, other_above) = (heights(normal, [a, b, c]), heights(outward, [p, q, r]));
+                highest = highest.max((above.1 - height).max(other_above.1 - offset) - rounding);
+                lowest = lowest.min((above.0 - height).min(other_above.0 - offset) + rounding);
             }
             let mut plane = Plane { offset: offset.into(), ..Plane::default() };
             outward.store(&mut plane.normal);
             planes.push(plane);
         }
-        // Those that have no faces are far from all.
         let far = lane(simd, beyond);
-        for plane in planes {
-            plane.offset = (lane(simd, &plane.offset) - far).into();
-        }
         let has_faces = far.simd_le(0.0);
-        let is_convex = !(has_faces & highest.simd_gt(0.0)).any_true();
-        let is_even = !(has_faces & flattest.simd_lt(EVEN)).any_true();
-        *terrain = match (is_convex, is_even) {
-            (true, true) => Terrain::Even,
-            (true, false) => Terrain::Convex,
-            _ => Terrain::Rough,
-        };
+        let (rises, falls) = (has_faces & highest.simd_gt(zero), has_faces & lowest.simd_lt(zero));
+        if is_closed && !rises.any_true() {
+            *passes = 1;
+        }
+        if (rises & falls | has_faces & flattest.simd_lt(EVEN)).any_true() {
+            planes.clear();
+        }
+        let turned = rises.select(-one, one);
+        *side = turned.into();
+        for plane in planes {
+            (Vec3x8::load(simd, &plane.normal) * turned).store(&mut plane.normal);
+            // Those that have no faces are far from all.
+            plane.offset = (lane(simd, &plane.offset) * turned - far).into();
+        }
     }
+
+    /// Whether one of the faces that the block knows has an edge that no other shares.
+    fn has_border(&self) -> bool {
+        let owned = &self.mesh.surface.owned;
+        let ends_at = |&face: &u32| owned[face as usize].edges.iter().any(|&sharp| sharp >= 1.0);
+        !self.mesh.is_closed && self.known().faces.as_flattened().iter().any(ends_at)
+    }
+}
+
+/// The least and the greatest height of corners.
+#[inline(always)]
+fn heights<S: Simd>(upward: Vec3x8<S>, [a, b, c]: [Vec3x8<S>; 3]) -> (f32x8<S>, f32x8<S>) {
+    let (a, b, c) = (upward.dot(a), upward.dot(b), upward.dot(c));
+    (a.min(b).min(c), a.max(b).max(c))
 }

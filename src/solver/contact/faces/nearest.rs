@@ -2,7 +2,7 @@
 
 use fearless_simd::{f32x8, prelude::*};
 
-use super::{Known, Plane};
+use super::Known;
 use crate::solver::{
     contact::{number::Number, solid::Seen},
     lanes::Block,
@@ -86,17 +86,21 @@ impl<S: Simd> Nearest<S> {
 
 /// The highest of the planes above or below places.
 #[inline(always)]
-pub(super) fn highest<S: Simd>(simd: S, place: Vec3x8<S>, planes: &[Plane]) -> Seen<f32x8<S>> {
-    let mut distance = f32x8::splat(simd, f32::MIN);
+pub(super) fn highest<S: Simd>(simd: S, place: Vec3x8<S>, known: &Known, is_closed: bool) -> Seen<f32x8<S>> {
+    let mut height = f32x8::splat(simd, f32::MIN);
     let mut normal = Vec3x8::splat(simd, [0.0; 3]);
-    for plane in planes {
-        let outward = Vec3x8::load(simd, &plane.normal);
-        let height = place.dot(outward) - lane(simd, &plane.offset);
-        let is_higher = height.simd_gt(distance);
-        distance = is_higher.select(height, distance);
-        normal = outward.or(is_higher, normal);
+    for plane in &known.planes {
+        let upward = Vec3x8::load(simd, &plane.normal);
+        let above = place.dot(upward) - lane(simd, &plane.offset);
+        let is_higher = above.simd_gt(height);
+        height = is_higher.select(above, height);
+        normal = upward.or(is_higher, normal);
     }
-    Seen { distance, normal }
+    let side = match is_closed {
+        true => lane(simd, &known.side),
+        false => f32x8::splat(simd, 1.0).copysign(height),
+    };
+    Seen { distance: height * side, normal: normal * side }
 }
 
 /// Weights of the corners of a triangle at its place closest to `p`: its inside where `p` is above that, else the closest of
