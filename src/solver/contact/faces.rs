@@ -260,6 +260,16 @@ impl Sight for FacesInSight<'_> {
     }
 
     #[inline(always)]
+    fn from_side_of<S: Simd>(&self, simd: S, before: Seen<f32x8<S>>, after: Seen<f32x8<S>>) -> Seen<f32x8<S>> {
+        // Near planes, nothing goes by without going through. Of what is closed, they know the side themselves.
+        if self.known().planes.is_empty() {
+            return after;
+        }
+        let side = f32x8::splat(simd, 1.0).copysign(before.normal.dot(after.normal));
+        Seen { distance: after.distance * side, normal: after.normal * side }
+    }
+
+    #[inline(always)]
     fn own_way<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Vec3x8<S> {
         if !self.is_deformed {
             return Vec3x8::splat(simd, [0.0; 3]);

@@ -222,6 +222,8 @@ impl Past<'_, '_> {
             return None;
         }
         let old = sight.seen_before(simd, course.start_to_local(before));
+        let after = sight.from_side_of(simd, old, after);
+        let depth = -after.distance + distance;
         let sees_the_same = old.normal.dot(after.normal).simd_gt(zero);
         // What leaves by itself needs that much less of a push, and none that makes it too fast.
         let (was_inside, is_inside) = ((-old.distance + distance).max(zero), depth.max(zero));

@@ -32,6 +32,9 @@ const CLEAR: f32 = 32.0;
 /// Width of the grid that regions are rounded to, m: what rests stays in one region from step to step, and needs no new look.
 const GRID: f32 = 0.002;
 
+/// Added and taken away again, it leaves whole numbers: floats of this size have no room for more.
+const WHOLE: f32 = (3 << 22) as f32;
+
 /// Cosine of the angle between faces up to which the highest of their planes is the surface: beyond the edge between them, that
 /// keeps particles off by 3 % of their distance more at most.
 const EVEN: f32 = 0.9;
@@ -69,9 +72,9 @@ struct Region {
 impl Region {
     /// One of the grid that it lies in.
     fn rounded(self) -> Self {
-        let centre = (self.centre / GRID).round() * GRID;
-        let radius = ((self.radius + self.centre.distance(centre)) / GRID).ceil() * GRID;
-        Self { centre, radius }
+        let centre = (self.centre / GRID + WHOLE - WHOLE) * GRID;
+        let radius = (self.radius + self.centre.distance(centre)) / GRID + 0.5;
+        Self { centre, radius: (radius + WHOLE - WHOLE) * GRID }
     }
 }
 
