@@ -22,6 +22,9 @@ pub enum Contact {
         /// grid, delaunay, hex, skirt, ell, sleeve, or a FILE.glb, which is scaled to 1 m
         #[arg(long, default_value = "grid")]
         mesh: MeshSource,
+        /// More spheres around, which are too far away for the cloth to reach
+        #[arg(long, default_value_t = 0)]
+        others: u32,
     },
     /// The same, where the sphere is a mesh of 20,480 triangles
     Mesh {
@@ -94,10 +97,11 @@ impl Contact {
     pub fn measure(&self) -> io::Result<Value> {
         let grid = &MeshSource::Grid;
         let (name, options, mesh, scene) = match self {
-            Self::Drape { options, mesh } => {
+            Self::Drape { options, mesh, others } => {
                 let settings = options.settings(SelfCollision::Off)?;
                 let (cloth, _) = hang::free(options, &settings, mesh)?;
-                ("drape", options, mesh, drape::on_ball(&settings, [drape::raised(cloth)]))
+                let scene = drape::on_ball(&settings, [drape::raised(cloth)]);
+                ("drape", options, mesh, drape::among(scene, *others))
             }
             Self::Mesh { options, open } => {
                 let settings = options.settings(SelfCollision::Off)?;

@@ -38,6 +38,17 @@ pub fn on_ball(settings: &Settings, cloths: impl IntoIterator<Item = Cloth>) -> 
     Scene::new(settings, cloths).with(Solid::Sphere(Sphere::new(RADIUS)), CENTRE).with(GROUND, Vec3::ZERO)
 }
 
+/// With so many more such balls around it, which are too far away for the cloth to reach.
+pub fn among(scene: Scene, others: u32) -> Scene {
+    // m, rad
+    const NEAREST: f32 = 2.0;
+    const GOLDEN_ANGLE: f32 = 2.399_963;
+    (0..others).map(|i| i as f32).fold(scene, |scene, i| {
+        let place = Quat::from_rotation_y(i * GOLDEN_ANGLE) * Vec3::X * (NEAREST + RADIUS * i.sqrt());
+        scene.with(Solid::Sphere(Sphere::new(RADIUS)), place + CENTRE)
+    })
+}
+
 /// The same ball of 20,480 triangles.
 pub fn on_mesh(settings: &Settings, cloth: Cloth, is_closed: bool) -> io::Result<Scene> {
     const SUBDIVISIONS: u32 = 31;

@@ -25,9 +25,11 @@ use crate::solver::{
 
 mod look;
 mod nearest;
+mod planes;
 mod way;
 
 use look::{Clear, Look, Sought};
+use planes::Plane;
 
 /// Distance that cloth keeps from triangles at least, m. Nearer, rounding decides which side it is on.
 pub(super) const LEAST: f32 = 0.0002;
@@ -77,14 +79,6 @@ struct Known {
     clear: [Clear; LANES],
     /// By how much farther a particle is taken to be, m: those that have no faces are far from all.
     beyond: Lane,
-}
-
-/// Planes, eight at a time: all places p with n · p = c.
-#[derive(Clone, Copy, Debug, Default)]
-struct Plane {
-    normal: Block,
-    /// m
-    offset: Lane,
 }
 
 /// A point of a block.
@@ -246,7 +240,7 @@ impl Sight for FacesInSight<'_> {
         if known.planes.is_empty() {
             nearest::nearest(simd, local, &known.now, known, is_closed).seen
         } else {
-            nearest::highest(simd, local, known, is_closed)
+            planes::highest(simd, local, known, is_closed)
         }
     }
 
@@ -260,7 +254,7 @@ impl Sight for FacesInSight<'_> {
     }
 
     #[inline(always)]
-    fn from_side_of<S: Simd>(&self, simd: S, before: Seen<f32x8<S>>, after: Seen<f32x8<S>>) -> Seen<f32x8<S>> {
+    fn keep_side<S: Simd>(&self, simd: S, before: Seen<f32x8<S>>, after: Seen<f32x8<S>>) -> Seen<f32x8<S>> {
         // Near planes, nothing goes by without going through. Of what is closed, they know the side themselves.
         if self.known().planes.is_empty() {
             return after;

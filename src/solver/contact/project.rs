@@ -222,7 +222,7 @@ impl Past<'_, '_> {
             return None;
         }
         let old = sight.seen_before(simd, course.start_to_local(before));
-        let after = sight.from_side_of(simd, old, after);
+        let after = sight.keep_side(simd, old, after);
         let depth = -after.distance + distance;
         let sees_the_same = old.normal.dot(after.normal).simd_gt(zero);
         // What leaves by itself needs that much less of a push, and none that makes it too fast.

@@ -84,25 +84,6 @@ impl<S: Simd> Nearest<S> {
     }
 }
 
-/// The highest of the planes above or below places.
-#[inline(always)]
-pub(super) fn highest<S: Simd>(simd: S, place: Vec3x8<S>, known: &Known, is_closed: bool) -> Seen<f32x8<S>> {
-    let mut height = f32x8::splat(simd, f32::MIN);
-    let mut normal = Vec3x8::splat(simd, [0.0; 3]);
-    for plane in &known.planes {
-        let upward = Vec3x8::load(simd, &plane.normal);
-        let above = place.dot(upward) - lane(simd, &plane.offset);
-        let is_higher = above.simd_gt(height);
-        height = is_higher.select(above, height);
-        normal = upward.or(is_higher, normal);
-    }
-    let side = match is_closed {
-        true => lane(simd, &known.side),
-        false => f32x8::splat(simd, 1.0).copysign(height),
-    };
-    Seen { distance: height * side, normal: normal * side }
-}
-
 /// Weights of the corners of a triangle at its place closest to `p`: its inside where `p` is above that, else the closest of
 /// its edges. Without branches, see [`on_triangle`](crate::solver::contact::closest::on_triangle).
 #[inline(always)]

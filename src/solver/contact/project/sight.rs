@@ -28,7 +28,7 @@ pub(in crate::solver::contact) trait Sight {
 
     /// What is seen after what was seen before, if the surface goes through between the two wherever both are in front of one that
     /// is thin: it is then seen from the side that the particle was on.
-    fn from_side_of<S: Simd>(&self, simd: S, before: Seen<f32x8<S>>, after: Seen<f32x8<S>>) -> Seen<f32x8<S>>;
+    fn keep_side<S: Simd>(&self, simd: S, before: Seen<f32x8<S>>, after: Seen<f32x8<S>>) -> Seen<f32x8<S>>;
 
     /// How far the nearest places of the surface have gone in between within the obstacle's frame, m.
     fn own_way<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Vec3x8<S>;
@@ -64,7 +64,7 @@ impl<F: Field> Sight for Whole<F> {
     }
 
     #[inline(always)]
-    fn from_side_of<S: Simd>(&self, _: S, _: Seen<f32x8<S>>, after: Seen<f32x8<S>>) -> Seen<f32x8<S>> {
+    fn keep_side<S: Simd>(&self, _: S, _: Seen<f32x8<S>>, after: Seen<f32x8<S>>) -> Seen<f32x8<S>> {
         after
     }
 
