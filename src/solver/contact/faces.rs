@@ -28,7 +28,7 @@ mod nearest;
 mod planes;
 mod way;
 
-use look::{Clear, Look, Sought};
+use look::{Clear, Sought};
 use planes::Plane;
 
 /// Distance that cloth keeps from triangles at least, m. Nearer, rounding decides which side it is on.
@@ -40,7 +40,6 @@ pub(in crate::solver) struct Faces {
     /// The mesh that the blocks know.
     mesh: Weak<TriangleMesh>,
     blocks: Vec<Known>,
-    look: Look,
     /// Where the points of a mesh that moves within its frame are when the substep begins, and when it ends, m.
     then: Vec<Vec3A>,
     now: Vec<Vec3A>,
@@ -63,6 +62,8 @@ struct Known {
     slack: f32,
     /// What it has looked for last, on this mesh.
     sought: Option<Sought>,
+    /// The faces that each of its particles may meet, and how far they are from the middle of its way, m.
+    found: [Vec<(f32, u32)>; LANES],
     /// Faces of all particles; where one has fewer than another, the first of them again.
     faces: Vec<[u32; LANES]>,
     /// Their corners when the substep ends, and, of a mesh that moves within its frame, when it begins, m.
@@ -126,7 +127,7 @@ impl Faces {
         if is_new {
             self.begin_at(shape, block_count);
         }
-        let Self { blocks, look, then, now, places, .. } = self;
+        let Self { blocks, then, now, places, .. } = self;
         let (points, places) = match deformed {
             None => ([&*mesh.points; 2], &mesh.places),
             Some([from, to]) => {
@@ -148,7 +149,6 @@ impl Faces {
             is_deformed: deformed.is_some(),
             places,
             blocks,
-            look,
             block: 0,
             passage: *passage,
             gravity: ctx.gravity,
@@ -167,7 +167,6 @@ pub(super) struct FacesInSight<'a> {
     is_deformed: bool,
     places: &'a Places,
     blocks: &'a mut [Known],
-    look: &'a mut Look,
     block: usize,
     passage: Passage,
     /// m/s²

@@ -38,13 +38,6 @@ const WHOLE: f32 = (3 << 22) as f32;
 /// By how much farther what has no faces is taken to be, m: its square is no number any more.
 const FAR: f32 = 1e30;
 
-/// Working memory.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Look {
-    /// The faces that each particle of the block may meet, and how far they are from the middle of its way, m.
-    found: [Vec<(f32, u32)>; LANES],
-}
-
 /// Boxes around the ways of triangles whose points go from one place to another.
 pub(super) fn follow(places: &mut Places, surface: &Surface, from: &[Vec3A], to: &[Vec3A]) {
     let bounds =
@@ -109,16 +102,26 @@ impl FacesInSight<'_> {
     pub(super) fn look_around<S: Simd>(&mut self, simd: S, run: &Run) {
         let is_free = run.inverse_mass[self.block].map(|w| w > 0.0);
         let regions = self.expect(run, is_free);
-        let sought = Some(Sought { regions, distance: self.passage.distance });
-        if !self.is_deformed && self.known().sought == sought {
+        let sought = Sought { regions, distance: self.passage.distance };
+        let known = &mut self.blocks[self.block];
+        let last = known.sought.replace(sought).filter(|last| !self.is_deformed && last.distance == sought.distance);
+        let is_new: [bool; LANES] = core::array::from_fn(|i| last.is_none_or(|last| last.regions[i] != regions[i]));
+        if is_new == [false; LANES] {
             return;
         }
-        self.blocks[self.block].sought = sought;
+        let mut new_regions = regions;
+        for (i, (found, region)) in known.found.iter_mut().zip(&mut new_regions).enumerate() {
+            if is_new[i] {
+                found.clear();
+            } else {
+                *region = None;
+            }
+        }
         simd.vectorize(
             #[inline(always)]
-            || self.find(simd, &regions),
+            || self.find(simd, &new_regions),
         );
-        self.find_inside(&regions);
+        self.find_inside(&new_regions);
         self.know();
         simd.vectorize(
             #[inline(always)]
@@ -160,12 +163,9 @@ impl FacesInSight<'_> {
     /// Finds the faces that come near to regions.
     #[inline(always)]
     fn find<S: Simd>(&mut self, simd: S, regions: &[Option<Region>; LANES]) {
-        let Known { span: known, .. } = self.known();
+        let Self { mesh: TriangleMesh { surface, .. }, points: [points, now], places, blocks, .. } = self;
+        let Known { span: known, found, .. } = &mut blocks[self.block];
         let left = (known.end - known.start) / (self.span.end - self.span.start);
-        let Self {
-            look: Look { found, .. }, mesh: TriangleMesh { surface, .. }, points: [points, now], places, ..
-        } = self;
-        found.iter_mut().for_each(Vec::clear);
         // How far a face goes, of a mesh that moves within its frame.
         let is_deformed = self.is_deformed;
         let way_of = |face: usize| {
@@ -214,12 +214,12 @@ impl FacesInSight<'_> {
 
     /// Finds the nearest face of particles that are deep inside of a closed mesh: those of a cloth that began there.
     fn find_inside(&mut self, regions: &[Option<Region>; LANES]) {
-        let Self { look: Look { found, .. }, blocks, mesh, points: [points, _], places, .. } = self;
+        let Self { blocks, mesh, points: [points, _], places, .. } = self;
         if !mesh.is_closed {
             return;
         }
         let TriangleMesh { surface, .. } = mesh;
-        let clear = &mut blocks[self.block].clear;
+        let Known { clear, found, .. } = &mut blocks[self.block];
         if self.is_deformed {
             *clear = [Clear::default(); LANES];
         }
@@ -244,11 +244,10 @@ impl FacesInSight<'_> {
 
     /// Keeps what has been found, side by side.
     fn know(&mut self) {
-        let found = &self.look.found;
-        let Known { faces, beyond, .. } = &mut self.blocks[self.block];
+        let Known { found, faces, beyond, .. } = &mut self.blocks[self.block];
         let most = found.iter().map(Vec::len).max().unwrap_or(0);
         *beyond = Lane::default();
-        for (beyond, _) in beyond.iter_mut().zip(found).filter(|(_, found)| found.is_empty()) {
+        for (beyond, _) in beyond.iter_mut().zip(&*found).filter(|(_, found)| found.is_empty()) {
             *beyond = FAR;
         }
         faces.clear();
