@@ -134,6 +134,70 @@ fn a_thin_sheet_of_triangles_holds_from_either_side() {
     }
 }
 
+/// A bowl of 2 m width and 0.4 m depth, of cells of 10 cm: a shell, or hollowed out of what comes to a point below it.
+fn bowl(is_closed: bool) -> TriangleMesh {
+    const CELLS: u32 = 20;
+    let node = |column: u32, row: u32| row * (CELLS + 1) + column;
+    let at = |i: u32| i as f32 * 0.1 - 1.0;
+    let rows = (0..=CELLS).flat_map(|row| (0..=CELLS).map(move |column| (column, row)));
+    let mut points: Vec<Vec3A> = rows
+        .map(|(column, row)| Vec3A::new(at(column), BOWL * (at(column).powi(2) + at(row).powi(2)), at(row)))
+        .collect();
+    let cells = (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| (column, row)));
+    let mut triangles: Vec<[u32; 3]> = cells
+        .flat_map(|(i, j)| {
+            let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
+            [[a, c, b], [a, d, c]]
+        })
+        .collect();
+    if is_closed {
+        let tip = points.len() as u32;
+        points.push(Vec3A::NEG_Y);
+        triangles.extend((0..CELLS).flat_map(|i| {
+            let last = CELLS;
+            let sides =
+                [[(i, 0), (i + 1, 0)], [(i + 1, last), (i, last)], [(0, i + 1), (0, i)], [(last, i), (last, i + 1)]];
+            sides.map(|[from, to]| [node(from.0, from.1), node(to.0, to.1), tip])
+        }));
+    }
+    TriangleMesh::new(points, &triangles, is_closed)
+}
+
+/// Height of the bowl above its deepest place, over the square of the distance to its axis, 1/m.
+const BOWL: f32 = 0.2;
+
+/// Height of the triangles of the bowl at a place, m.
+fn bowl_height(p: Vec3A) -> f32 {
+    let [x, z] = [p.x, p.z].map(|x| (x + 1.0) * 10.0);
+    let height = |i: f32, j: f32| BOWL * ((i.floor() * 0.1 - 1.0).powi(2) + (j.floor() * 0.1 - 1.0).powi(2));
+    let (u, v) = (x.fract(), z.fract());
+    let [here, both] = [height(x, z), height(x + 1.0, z + 1.0)];
+    if u > v {
+        let beside = height(x + 1.0, z);
+        here + u * (beside - here) + v * (both - beside)
+    } else {
+        let beside = height(x, z + 1.0);
+        here + v * (beside - here) + u * (both - beside)
+    }
+}
+
+#[test]
+fn a_bowl_catches_cloth_whether_solid_or_a_shell() {
+    for (method, is_closed) in STABLE.into_iter().flat_map(|method| [(method, true), (method, false)]) {
+        let mut bed = sheet(method, 24, 0.6);
+        bed.obstacles = vec![still(bowl(is_closed), Vec3::ZERO)];
+        for _ in 0..300 {
+            bed.step(1.0 / 60.0);
+            let above = |p: &Vec3A| p.y - bowl_height(*p);
+            let lowest = bed.particles.position.iter().map(above).fold(f32::MAX, f32::min);
+            assert!(lowest > 0.0035, "{method:?}, closed: {is_closed}: {lowest} m");
+        }
+        let highest = bed.particles.position.iter().map(|p| p.y - bowl_height(*p)).fold(0.0, f32::max);
+        assert!(highest < 0.05, "{method:?}, closed: {is_closed}: {highest} m above");
+        assert!(bed.fastest() < 0.05, "{method:?}, closed: {is_closed}: still {} m/s", bed.fastest());
+    }
+}
+
 #[test]
 fn a_mesh_at_thirty_metres_a_second_is_not_passed() {
     for (mesh, reach) in [(cuboid(Vec3::new(0.3, 0.01, 0.3)), 0.005), (ball(0.1, 3), 0.095)] {

@@ -109,6 +109,7 @@ impl FacesInSight<'_> {
         if is_new == [false; LANES] {
             return;
         }
+        // What the others have found still holds.
         let mut new_regions = regions;
         for (i, (found, region)) in known.found.iter_mut().zip(&mut new_regions).enumerate() {
             if is_new[i] {
