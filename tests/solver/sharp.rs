@@ -93,6 +93,13 @@ fn balls_at_thirty_metres_a_second_are_caught() {
 }
 
 #[test]
+fn a_ball_at_thirty_metres_a_second_is_caught_by_cells_that_it_stretches_to_more_than_its_width() {
+    let watched = watch_outside(bullet::ball(&alone(64, 60), 0.02));
+    assert_eq!(watched.worst.fault, 0.0, "{watched:?}");
+    assert!(watched.worst.penetration <= 0.01, "{watched:?}");
+}
+
+#[test]
 fn a_cloth_at_thirty_metres_a_second_does_not_pass_a_wall_of_four_millimetres() {
     for n in [12, 24] {
         for settings in [alone(n, 60), with_substeps(8, n, 60), with_substeps(32, n, 60), with_substeps(64, n, 60)] {

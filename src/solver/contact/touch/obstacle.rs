@@ -154,14 +154,12 @@ impl AtObstacle {
             }
             *number
         };
-        // What is thinner than an edge is caught by the triangles alone, however deep they are in it.
-        let thin = target.radii.iter().copied().filter(|&radius| radius < 0.5 * surface.longest_edge);
-        let thickness = thin.fold(0.0, f32::max);
         for one in &*found {
             let mut pair = one.pair;
             if let Shape::Solid(solid) = &obstacle.shape
                 && !pierced.contains(&(pair.points[0], one.face))
-                && depth_of(one, solid, position, at.first) > 2.0 * sink(cloth.ctx) + thickness
+                && depth_of(one, solid, position, at.first)
+                    > 2.0 * sink(cloth.ctx) + thickness(&pair, target.radii, position, at.first)
             {
                 // Its particles find the way out.
                 continue;
@@ -233,6 +231,21 @@ fn find_at_edges(
     pierced.dedup();
     found.retain(|one| one.is_first_of_a || !pierced.contains(&(one.pair.points[0], one.face)));
     found.extend(pierced.iter().map(|&(tip, face)| search::back_through((a, face), (b, tip), reach)));
+}
+
+/// Radius (m) of an obstacle's feature that fits through a cell of the cloth, stretched as this is: no particle is in its way,
+/// and triangles alone catch it, however deep they are in it. Zero of what doesn't fit.
+fn thickness(pair: &Pair, radii: &[f32], position: &[Vec3A], first: u32) -> f32 {
+    let [a, b, c, d] = pair.points;
+    let radius = |point: u32| radii.get(point as usize).copied().unwrap_or(0.0);
+    let squared_edge = |p: u32, q: u32| position[(p - first) as usize].distance_squared(position[(q - first) as usize]);
+    let (radius, longest) = match pair.features {
+        Features::PointFace => (radius(a), squared_edge(b, c).max(squared_edge(c, d)).max(squared_edge(d, b))),
+        Features::EdgeEdge => (radius(c).max(radius(d)), squared_edge(a, b)),
+        // Obstacles have none.
+        Features::PointPoint => return 0.0,
+    };
+    if 4.0 * radius * radius < longest { radius } else { 0.0 }
 }
 
 /// How deep the cloth's place of a pair is inside of a solid, m.
