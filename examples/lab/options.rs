@@ -60,6 +60,10 @@ pub struct Options {
     /// Distance that parts of cloth keep from each other, m
     #[arg(long, default_value_t = 0.004)]
     pub self_distance: f32,
+
+    /// Distance that the cloth keeps from obstacles beside its thickness, m; a `Cloth` keeps 0.005.
+    #[arg(long, default_value_t = 0.0)]
+    pub margin: f32,
     /// Threads that a large grid is shared by; with more than one, time is the wall clock's instead of the thread's own
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub threads: u32,
@@ -132,6 +136,7 @@ impl Options {
             },
             tether_slack: self.tether_slack,
             self_distance: self.self_distance,
+            margin: self.margin,
             ..Settings::standard(self.n, self.frames, self_collision)
         })
     }

@@ -125,6 +125,8 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut Touch) {
 struct Plan<'a> {
     dt: f32,
     is_near: bool,
+    /// Length that the longest edge is taken to have at obstacles, m.
+    longest_edge: f32,
     levels: &'a [LevelPass],
     substeps: u32,
     needed_substeps: u32,
@@ -146,11 +148,12 @@ impl<'a> Plan<'a> {
         }
         let mut near = contact::near_obstacles(particles, ctx, dt).peekable();
         let is_near = near.peek().is_some();
+        let longest_edge = touch::longest_edge(near.clone(), particles, topology, ctx);
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
         let touches = ctx.self_collision != SelfCollision::Off;
         let is_mounted = !ctx.mounted.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
-        let care = match (touch::sharpest(near, particles, topology, ctx, dt), ctx.self_collision) {
+        let care = match (touch::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.self_collision) {
             (Some((Sharp::Tip, wanted)), _) => Care::Tip(wanted),
             (Some((Sharp::Edge, wanted)), _) => Care::Edge(wanted),
             (None, SelfCollision::Robust) => Care::Robust,
@@ -173,7 +176,7 @@ impl<'a> Plan<'a> {
             }
         };
         let substeps = needed_substeps.min(most);
-        Some(Self { dt, is_near, levels, substeps, needed_substeps, stiffness_scale })
+        Some(Self { dt, is_near, longest_edge, levels, substeps, needed_substeps, stiffness_scale })
     }
 }
 
@@ -186,6 +189,8 @@ pub(super) struct Running<'a> {
     substep: Substep<'a>,
     /// Its origin from that of the first cloth, m.
     pub offset: Vec3A,
+    /// Length that its longest edge is taken to have at obstacles, m.
+    pub longest_edge: f32,
     dt: f32,
     substeps: u32,
     needed_substeps: u32,
@@ -210,7 +215,7 @@ impl<'a> Running<'a> {
         substeps: u32,
         offset: Vec3A,
     ) -> Self {
-        let Plan { dt, is_near, levels, needed_substeps, stiffness_scale, .. } = plan;
+        let Plan { dt, is_near, longest_edge, levels, needed_substeps, stiffness_scale, .. } = plan;
         let h = dt / substeps as f32;
         let helpers = helpers(topology, ctx);
         let Loaded { is_pushed, has_moved } = load(particles, topology, ctx, h, helpers, scratch);
@@ -244,6 +249,7 @@ impl<'a> Running<'a> {
             ctx,
             substep,
             offset,
+            longest_edge,
             dt,
             substeps,
             needed_substeps,

@@ -94,9 +94,12 @@ fn balls_at_thirty_metres_a_second_are_caught() {
 
 #[test]
 fn a_ball_at_thirty_metres_a_second_is_caught_by_cells_that_it_stretches_to_more_than_its_width() {
-    let watched = watch_outside(bullet::ball(&alone(64, 60), 0.02));
-    assert_eq!(watched.worst.fault, 0.0, "{watched:?}");
-    assert!(watched.worst.penetration <= 0.01, "{watched:?}");
+    // Without a margin, and with that of a `Cloth`.
+    for (n, margin) in [(64, 0.0), (72, 0.0), (48, 0.005), (64, 0.005)] {
+        let watched = watch_outside(bullet::ball(&Settings { margin, ..alone(n, 60) }, 0.02));
+        assert_eq!(watched.worst.fault, 0.0, "{n}, {margin} m: {watched:?}");
+        assert!(watched.worst.penetration <= 0.01, "{n}, {margin} m: {watched:?}");
+    }
 }
 
 #[test]

@@ -42,6 +42,8 @@ pub struct Settings {
     pub self_collision: SelfCollision,
     /// Distance that parts of cloth keep from each other, m.
     pub self_distance: f32,
+    /// Distance that the cloth keeps from obstacles beside its thickness, m.
+    pub margin: f32,
 }
 
 impl Settings {
@@ -59,6 +61,7 @@ impl Settings {
             material: Material { damping: 1.0, friction: 0.5, ..Material::bare(DENSITY, springs) },
             tether_slack: 0.002,
             self_collision,
+            margin: 0.0,
             self_distance: 0.004,
         }
     }

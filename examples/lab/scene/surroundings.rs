@@ -32,7 +32,7 @@ impl Surroundings {
             max_velocity: 50.0,
             tethers: rig.tethers.as_ref(),
             tether_slack: settings.tether_slack,
-            margin: 0.0,
+            margin: settings.margin,
             max_depenetration_velocity: 1.0,
             self_collision: settings.self_collision,
             collision_layers: 1,

@@ -85,7 +85,7 @@ pub(in crate::solver) fn near_obstacles<'a>(
     particles: &Particles,
     ctx: &StepContext<'a>,
     dt: f32,
-) -> impl Iterator<Item = &'a Obstacle> {
+) -> impl Iterator<Item = &'a Obstacle> + Clone {
     let ends = ctx.anchors.iter().map(|anchor| anchor.end).chain(ctx.grabs.iter().map(|grab| grab.end));
     let places = particles.position.iter().copied().chain(ends).filter(|_| !ctx.obstacles.is_empty());
     let (low, high) = places.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));

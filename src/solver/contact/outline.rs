@@ -65,7 +65,7 @@ impl Outline {
 /// How tightly a cloth lies on what it lies on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tightness {
-    /// Its longest edge, m.
+    /// Its longest edge, as stretched as it counts, m.
     pub edge: f32,
     /// Distance that it keeps, m.
     pub distance: f32,

@@ -47,6 +47,9 @@ const FALL: f32 = 0.5;
 const SINK: f32 = 0.0005;
 const SINK_OF_DISTANCE: f32 = 0.5;
 
+/// Edges longer than at rest by this factor are taken for stretched to twice their length: it comes to that before the step is over.
+const STRETCHED: f32 = 1.25;
+
 /// How often pairs with obstacles are solved again within a substep.
 const AGAIN_AT_OBSTACLES: u32 = 8;
 
@@ -63,18 +66,45 @@ fn sink(ctx: &StepContext) -> f32 {
     ctx.margin.max(SINK).max(SINK_OF_DISTANCE * ctx.contact_distance())
 }
 
+/// Length of a cloth's longest edge, m: that at rest, or twice that where the cloth is stretched and something is `near` that fits
+/// through its cells only then.
+///
+/// A pull goes about one edge farther in each substep, so what comes faster than that is going to stretch the cells. It is that or
+/// twice that, since outlines are drawn anew where it changes.
+pub fn longest_edge<'a>(
+    near: impl Iterator<Item = &'a Obstacle>,
+    particles: &Particles,
+    topology: &Topology,
+    ctx: &StepContext,
+) -> f32 {
+    let surface = topology.surface();
+    let at_rest = surface.longest_edge;
+    let fit_once_stretched = near.filter(|obstacle| {
+        let Shape::Solid(solid) = &obstacle.shape else { return false };
+        let fits = |edge| outlines::tightness(obstacle, edge, ctx).pierced_by(solid) == Some(Sharp::Tip);
+        fits(2.0 * at_rest) && !fits(at_rest)
+    });
+    let ways = fit_once_stretched.map(|obstacle| obstacle.start.translation.distance(obstacle.end.translation));
+    let Some(way) = ways.reduce(f32::max) else { return at_rest };
+    let place = |i: u32| particles.position[i as usize];
+    let longest = surface.edges().map(|[p, q]| place(p).distance_squared(place(q))).fold(0.0, f32::max).sqrt();
+    let outrun = at_rest + way / ctx.effort.careful_substeps as f32;
+    if longest.max(outrun) > STRETCHED * at_rest { 2.0 * at_rest } else { at_rest }
+}
+
 /// What is sharpest among the obstacles `near` a cloth, and into how many substeps to cut a step of `dt` seconds so that nothing
 /// sharp goes by more than half an edge of the cloth in one of them. None where nothing is sharp, or nothing moves.
 pub fn sharpest<'a>(
     near: impl Iterator<Item = &'a Obstacle>,
     particles: &Particles,
     topology: &Topology,
+    longest_edge: f32,
     ctx: &StepContext,
     dt: f32,
 ) -> Option<(Sharp, f32)> {
     let sharp = near.filter_map(|obstacle| match &obstacle.shape {
         Shape::Solid(solid) => {
-            let sharp = outlines::tightness(obstacle, topology, ctx).pierced_by(solid)?;
+            let sharp = outlines::tightness(obstacle, longest_edge, ctx).pierced_by(solid)?;
             Some((sharp, obstacle.start.translation.distance(obstacle.end.translation)))
         }
         Shape::Mesh(_) => None,

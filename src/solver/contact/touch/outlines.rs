@@ -1,7 +1,7 @@
 //! The outlines of solids, each drawn once for what a cloth needs.
 
 use crate::solver::{
-    StepContext, Topology,
+    StepContext,
     contact::{
         Obstacle, faces,
         outline::{Outline, Tightness},
@@ -42,7 +42,7 @@ pub fn distance_to(obstacle: &Obstacle, ctx: &StepContext) -> f32 {
     ctx.contact_distance().max(faces::LEAST) + obstacle.rounding
 }
 
-/// How tightly a cloth lies on an obstacle.
-pub fn tightness(obstacle: &Obstacle, topology: &Topology, ctx: &StepContext) -> Tightness {
-    Tightness { edge: topology.surface().longest_edge, distance: distance_to(obstacle, ctx), sink: sink(ctx) }
+/// How tightly a cloth, whose longest edge is of length `edge` (m), lies on an obstacle.
+pub fn tightness(obstacle: &Obstacle, edge: f32, ctx: &StepContext) -> Tightness {
+    Tightness { edge, distance: distance_to(obstacle, ctx), sink: sink(ctx) }
 }
