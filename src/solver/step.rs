@@ -148,7 +148,8 @@ impl<'a> Plan<'a> {
         }
         let mut near = contact::near_obstacles(particles, ctx, dt).peekable();
         let is_near = near.peek().is_some();
-        let longest_edge = touch::longest_edge(near.clone(), particles, topology, ctx);
+        // Nothing else asks for it: a cloth that nothing is near needs no surface.
+        let longest_edge = if is_near { touch::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
         let touches = ctx.self_collision != SelfCollision::Off;
         let is_mounted = !ctx.mounted.is_empty();
