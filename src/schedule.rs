@@ -4,11 +4,16 @@ use bevy::{
     app::FixedMain,
     asset::AssetEventSystems,
     ecs::{
-        schedule::{InternedScheduleLabel, ScheduleConfigs, ScheduleLabel},
-        system::{ScheduleSystem, SystemParam},
+        schedule::{InternedScheduleLabel, ScheduleLabel},
+        system::SystemParam,
     },
     prelude::*,
 };
+
+#[cfg(any(feature = "avian", feature = "rapier"))]
+use bevy::ecs::schedule::ScheduleConfigs;
+#[cfg(any(feature = "avian", feature = "rapier", feature = "debug", feature = "panel"))]
+use bevy::ecs::system::ScheduleSystem;
 
 #[cfg(any(feature = "avian", feature = "rapier"))]
 use crate::engine::{self, Engine, Pushes};

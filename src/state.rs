@@ -103,6 +103,7 @@ pub(crate) struct Said {
 }
 
 /// What a cloth has given to a body.
+#[cfg_attr(not(any(feature = "avian", feature = "rapier")), expect(dead_code, reason = "physics engines read it"))]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Given {
     /// The body, or one of its colliders.
