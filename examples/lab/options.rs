@@ -60,8 +60,7 @@ pub struct Options {
     /// Distance that parts of cloth keep from each other, m
     #[arg(long, default_value_t = 0.004)]
     pub self_distance: f32,
-
-    /// Distance that the cloth keeps from obstacles beside its thickness, m; a `Cloth` keeps 0.005.
+    /// Distance that the cloth keeps from obstacles beside its thickness, m; a `Cloth` keeps 0.005
     #[arg(long, default_value_t = 0.0)]
     pub margin: f32,
     /// Threads that a large grid is shared by; with more than one, time is the wall clock's instead of the thread's own

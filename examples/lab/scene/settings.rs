@@ -61,8 +61,8 @@ impl Settings {
             material: Material { damping: 1.0, friction: 0.5, ..Material::bare(DENSITY, springs) },
             tether_slack: 0.002,
             self_collision,
-            margin: 0.0,
             self_distance: 0.004,
+            margin: 0.0,
         }
     }
 

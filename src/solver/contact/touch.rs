@@ -47,7 +47,8 @@ const FALL: f32 = 0.5;
 const SINK: f32 = 0.0005;
 const SINK_OF_DISTANCE: f32 = 0.5;
 
-/// Edges longer than at rest by this factor are taken for stretched to twice their length: it comes to that before the step is over.
+/// Edges longer than at rest by this factor are taken for stretched to twice their length: it may come to that before the step
+/// is over.
 const STRETCHED: f32 = 1.25;
 
 /// How often pairs with obstacles are solved again within a substep.

@@ -159,7 +159,7 @@ impl AtObstacle {
             if let Shape::Solid(solid) = &obstacle.shape
                 && !pierced.contains(&(pair.points[0], one.face))
                 && depth_of(one, solid, position, at.first)
-                    > 2.0 * sink(cloth.ctx) + thickness(&pair, solid, target.radii, position, at.first)
+                    > 2.0 * sink(cloth.ctx) + thickness(&pair, target.radii, position, at.first)
             {
                 // Its particles find the way out.
                 continue;
@@ -234,8 +234,8 @@ fn find_at_edges(
 }
 
 /// Radius (m) of an obstacle's feature that fits through a cell of the cloth, stretched as this is: no particle is in its way,
-/// and triangles alone catch it, however deep they are in it. Zero of what doesn't fit, or has a particle inside.
-fn thickness(pair: &Pair, solid: &Solid, radii: &[f32], position: &[Vec3A], first: u32) -> f32 {
+/// and triangles alone catch it, however deep they are in it. Zero of what doesn't fit.
+fn thickness(pair: &Pair, radii: &[f32], position: &[Vec3A], first: u32) -> f32 {
     let [a, b, c, d] = pair.points;
     let radius = |point: u32| radii.get(point as usize).copied().unwrap_or(0.0);
     let place = |point: u32| position[(point - first) as usize];
@@ -246,8 +246,7 @@ fn thickness(pair: &Pair, solid: &Solid, radii: &[f32], position: &[Vec3A], firs
         Features::PointPoint => return 0.0,
     };
     let longest = p.distance_squared(q).max(q.distance_squared(r)).max(r.distance_squared(p));
-    let fits = 4.0 * radius * radius < longest && [p, q, r].iter().all(|&p| solid.surface(p).distance >= 0.0);
-    if fits { radius } else { 0.0 }
+    if 4.0 * radius * radius < longest { radius } else { 0.0 }
 }
 
 /// How deep the cloth's place of a pair is inside of a solid, m.
