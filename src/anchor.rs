@@ -6,27 +6,32 @@ use bevy::{
 };
 
 use crate::{
-    build::Tying,
+    build::{Blending, Tying},
     cloth::ClothStatus,
-    draw::{carrier::Carrier, mesh::ClothMesh},
+    draw::mesh::ClothMesh,
     origin,
     pins::{PinTarget, Pins, targets_by_particle},
+    pose::{Poses, is_invertible},
     solver::Anchor,
     state::{ClothState, Work},
+    teleport::Jump,
 };
+
+mod carrier;
+
+pub(crate) use carrier::Carrier;
 
 /// A fixed particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HeldPin {
     pub particle: u32,
     pub target: PinTarget,
+    /// Which of the cloth's carriers that is.
+    pub carrier: u32,
     /// Its place in the target's own space, once the target has a pose that can be followed; for
     /// [`PinTarget::World`] its place relative to the cloth's origin.
     pub offset: Option<Vec3A>,
 }
-
-/// World poses of entities, up to date within a frame.
-pub(crate) type Poses<'w, 's> = TransformHelper<'w, 's>;
 
 /// Reads changed [`Pins`] and re-ties the tethers.
 pub(crate) fn update_pins(
@@ -51,46 +56,64 @@ pub(crate) fn update_pins(
 ///
 /// A particle that keeps its target keeps its place there.
 pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity, poses: &Poses) {
+    let mut carriers: Vec<Carrier> = Vec::new();
     let pins: Vec<HeldPin> = (0..)
         .zip(targets)
         .filter(|&(_, &target)| target != PinTarget::Free)
         .map(|(particle, &target)| {
             let held = state.pins.binary_search_by_key(&particle, |pin| pin.particle).ok();
             let kept = held.map(|i| state.pins[i]).filter(|pin| pin.target == target);
-            kept.unwrap_or_else(|| {
-                let offset = (target == PinTarget::World).then(|| state.particles.position[particle as usize]);
-                HeldPin { particle, target, offset }
-            })
+            let world_place = || (target == PinTarget::World).then(|| state.particles.position[particle as usize]);
+            let offset = kept.map_or_else(world_place, |pin| pin.offset);
+            let carrier = carriers.iter().position(|carrier| carrier.target == target).unwrap_or_else(|| {
+                let known = state.carriers.iter().find(|carrier| carrier.target == target);
+                carriers.push(known.copied().unwrap_or_else(|| Carrier::new(target, cloth, poses)));
+                carriers.len() - 1
+            });
+            HeldPin { particle, target, carrier: carrier as u32, offset }
         })
         .collect();
     if pins == state.pins {
         return;
     }
     let particles: Vec<u32> = pins.iter().map(|pin| pin.particle).collect();
-    state.tethers.keep(|pin| particles.binary_search(&pin).is_ok());
+    state.keep_tethers(|pin| particles.binary_search(&pin).is_ok());
     let tied = particles.iter().copied().filter(|particle| !state.mounted.contains(particle));
     state.tying = Some(Box::new(Tying::begin(tied.collect())));
+    state.blend_weights = None;
+    state.blending = (carriers.len() > 1).then(|| {
+        let held = pins.iter().map(|pin| (pin.particle, pin.carrier));
+        Box::new(Blending::begin(held.collect()))
+    });
     state.pins = pins;
+    state.carriers = carriers;
     set_masses(state);
     // Takes the places of new pins in their targets' space now, before either moves on.
-    plan_anchors(state, cloth, poses);
-    state.carrier = carrier(state, cloth, poses);
+    plan_anchors(state);
 }
 
 /// Distances along the cloth that are worked out in one step: some milliseconds. 64 x 64 particles on two pins are done
 /// in one.
 const DISTANCES_A_STEP: usize = 12_000;
 
-/// Works on tethers that pins have asked for; a large cloth hangs by its old ones meanwhile.
+/// Works on what pins have asked for: tethers, by whose old ones a large cloth hangs meanwhile, and weights of the carriers
+/// that it is drawn with.
 pub(crate) fn tie_tethers(mut cloths: Query<(&mut ClothState, &ClothStatus)>) {
     for (mut state, status) in &mut cloths {
-        if *status != ClothStatus::Ready || state.tying.is_none() {
+        if *status != ClothStatus::Ready || state.tying.is_none() && state.blending.is_none() {
             continue;
         }
         let state = &mut *state;
+        if let Some(mut blending) = state.blending.take() {
+            if blending.go_on(&state.topology, DISTANCES_A_STEP) {
+                state.blend_weights = Some(blending.finish());
+            } else {
+                state.blending = Some(blending);
+            }
+        }
         if let Some(mut tying) = state.tying.take() {
-            if tying.go_on(&state.topology, DISTANCES_A_STEP) {
-                state.tethers = tying.finish(&state.topology);
+            if tying.go_on(state.built_topology(), DISTANCES_A_STEP) {
+                state.set_tethers(tying.finish(state.built_topology()));
             } else {
                 state.tying = Some(tying);
             }
@@ -108,31 +131,51 @@ pub(crate) fn set_masses(state: &mut ClothState) {
     state.particles.set_masses(&state.topology, material, |i| is_fixed[i]);
 }
 
-/// Plans the way of every pinned particle over the coming step.
+/// Plans the way of every pinned particle over the coming step. A cloth that jumps, or whose pins all do, jumps along first.
 pub(crate) fn follow_targets(mut cloths: Query<(Entity, &mut ClothState, &ClothStatus)>, poses: Poses) {
     for (entity, mut state, status) in &mut cloths {
         if *status != ClothStatus::Ready {
             continue;
         }
         let state = &mut *state;
+        for carrier in &mut state.carriers {
+            carrier.follow(entity, &poses);
+        }
+        let mut jump = None;
         if let Ok(pose) = poses.compute_global_transform(entity) {
             let pose = pose.affine();
-            if core::mem::take(&mut state.requests.teleport) {
-                origin::teleport(state, pose);
-                state.carrier = None;
-            }
+            jump = take_asked_jump(state, pose);
             state.pose = pose;
+            state.follow_scale();
         }
+        if jump.is_none() {
+            jump = Carrier::common_jump(&state.carriers);
+            if let Some(jump) = &jump {
+                origin::carry(state, jump);
+            }
+        }
+        if jump.is_some() {
+            state.carriers.iter_mut().for_each(Carrier::forget_way);
+        }
+        state.work.jump = jump;
         origin::stay_near(state);
-        plan_anchors(state, entity, &poses);
-        state.carrier = carrier(state, entity, &poses);
+        plan_anchors(state);
     }
 }
 
-fn plan_anchors(state: &mut ClothState, cloth: Entity, poses: &Poses) {
+/// Does the jump to `pose` that has been asked for, and tells of the one that a reset has been.
+fn take_asked_jump(state: &mut ClothState, pose: Affine3A) -> Option<Jump> {
+    let reset_from = state.requests.reset_from.take();
+    if core::mem::take(&mut state.requests.teleport) {
+        let jump = Jump::between(state.pose, pose)?;
+        origin::carry(state, &jump);
+        return Some(jump);
+    }
+    Jump::between(reset_from?, pose)
+}
+
+fn plan_anchors(state: &mut ClothState) {
     let origin = Vec3A::from(state.origin);
-    // Pins of one target stand together mostly: its pose is looked up once.
-    let mut latest: Option<(PinTarget, Option<Affine3A>)> = None;
     let Work { anchors, mounts, mount_owners, mounted, .. } = &mut state.work;
     anchors.clear();
     // Bridges to physics engines fill these.
@@ -140,34 +183,24 @@ fn plan_anchors(state: &mut ClothState, cloth: Entity, poses: &Poses) {
     mount_owners.clear();
     mounted.clear();
     for pin in &mut state.pins {
-        let pose = match latest {
-            Some((target, pose)) if target == pin.target => pose,
-            _ => target_pose(pin.target, cloth, poses),
-        };
-        latest = Some((pin.target, pose));
-        let start = state.particles.position[pin.particle as usize];
-        let end = match (pin.target, pose) {
-            (PinTarget::World, _) => pin.offset.unwrap_or(start),
+        let carrier = &state.carriers[pin.carrier as usize];
+        let place = &mut state.particles.position[pin.particle as usize];
+        let end = match (pin.target, carrier.pose()) {
+            (PinTarget::World, _) => pin.offset.unwrap_or(*place),
             (_, Some(pose)) => {
                 let from_pose = pose.translation - origin;
-                let offset = *pin.offset.get_or_insert_with(|| pose.matrix3.inverse() * (start - from_pose));
+                let offset = *pin.offset.get_or_insert_with(|| pose.matrix3.inverse() * (*place - from_pose));
                 pose.matrix3 * offset + from_pose
             }
             // The target is gone, flat or not there yet: stay.
-            (_, None) => start,
+            (_, None) => *place,
         };
-        let end = if end.is_finite() { end } else { start };
-        anchors.push(Anchor { particle: pin.particle, start, end });
+        let end = if end.is_finite() { end } else { *place };
+        if carrier.has_jumped() {
+            *place = end;
+        }
+        anchors.push(Anchor { particle: pin.particle, start: *place, end });
     }
-}
-
-/// The entity that all pins follow, if they all follow one, and its way from the latest step to now.
-fn carrier(state: &ClothState, cloth: Entity, poses: &Poses) -> Option<Carrier> {
-    let target = state.pins.first()?.target;
-    let entity = target_entity(target, cloth).filter(|_| state.pins.iter().all(|pin| pin.target == target))?;
-    let end = target_pose(target, cloth, poses)?;
-    let start = state.carrier.filter(|carrier| carrier.entity == entity).map_or(end, |carrier| carrier.end);
-    Some(Carrier { entity, start, end })
 }
 
 /// The entity that a target's pins follow.
@@ -183,9 +216,4 @@ pub(crate) fn target_entity(target: PinTarget, cloth: Entity) -> Option<Entity> 
 fn target_pose(target: PinTarget, cloth: Entity, poses: &Poses) -> Option<Affine3A> {
     let pose = poses.compute_global_transform(target_entity(target, cloth)?).ok()?.affine();
     is_invertible(&pose).then_some(pose)
-}
-
-/// Whether a transform keeps volume: all of its scales are finite and not zero.
-pub(crate) fn is_invertible(pose: &Affine3A) -> bool {
-    pose.is_finite() && pose.matrix3.determinant().is_normal() && pose.inverse().is_finite()
 }

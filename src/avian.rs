@@ -75,3 +75,10 @@ impl Plugin for ClothAvianPlugin {
         schedule::bridge(app, "ClothAvianPlugin", Engine::Avian, PhysicsSystems::Last, systems);
     }
 }
+
+/// The world has been shifted, and all bodies with it.
+pub(crate) fn shift(world: &mut World, by: Vec3) {
+    if let Some(mut bridge) = world.get_resource_mut::<Bridge<SharedShape>>() {
+        bridge.bodies.shift(by);
+    }
+}

@@ -5,6 +5,7 @@ use bevy::{math::Mat3A, prelude::*};
 use crate::{error::ClothError, solver::Topology};
 
 mod bends;
+mod blend;
 mod braids;
 mod candidate;
 mod cells;
@@ -26,11 +27,13 @@ mod rate;
 mod shares;
 pub(crate) mod source;
 mod springs;
+pub(crate) mod stretch;
 pub(crate) mod system;
 mod threads;
 mod topology;
 pub(crate) mod weld;
 
+pub(crate) use blend::{BlendWeights, Blending};
 pub(crate) use geodesic::Tying;
 pub use geodesic::{grab_tethers, tethers};
 
@@ -48,7 +51,7 @@ use weld::Welded;
 ///
 /// A [`ClothError`] where the mesh has no triangle with an area or can't be read.
 pub fn topology_of(mesh: &Mesh, to_world: Mat3A) -> Result<Topology, ClothError> {
-    Ok(particles_of(&SourceMesh::read(mesh)?, to_world)?.1)
+    Ok(particles_of(&SourceMesh::read(mesh)?.wound_by_normals(), to_world)?.1)
 }
 
 /// The particle of [`topology_of`] that each vertex is; none for a vertex that is in no triangle.
@@ -57,7 +60,7 @@ pub fn topology_of(mesh: &Mesh, to_world: Mat3A) -> Result<Topology, ClothError>
 ///
 /// A [`ClothError`] where the mesh has no triangle with an area or can't be read.
 pub fn particles_of_vertices(mesh: &Mesh, to_world: Mat3A) -> Result<Vec<Option<u32>>, ClothError> {
-    let (welded, _) = particles_of(&SourceMesh::read(mesh)?, to_world)?;
+    let (welded, _) = particles_of(&SourceMesh::read(mesh)?.wound_by_normals(), to_world)?;
     let particle = |&particle: &u32| (particle != weld::NO_PARTICLE).then_some(particle);
     Ok(welded.particle_of_vertex.iter().map(particle).collect())
 }

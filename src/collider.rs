@@ -6,8 +6,10 @@ use bevy::{
 };
 
 use crate::{
-    anchor::Poses,
+    clock::FromLatestStep,
+    pose::Poses,
     solver::{Body, Obstacle, Shape, Solid},
+    teleport::{Jump, JumpDetection, PastPose},
 };
 use error::ColliderError;
 
@@ -19,8 +21,10 @@ mod solid;
 /// An obstacle for cloth, moved by its `Transform`.
 ///
 /// Move it in `FixedUpdate` or any schedule that runs once a step: its way since the latest step is what pushes the
-/// cloth, and one that moves once a frame comes in jolts where a frame has several steps or none. Removing the component
-/// and inserting it again lets it jump without pushing.
+/// cloth, and one that moves once a frame comes in jolts where a frame has several steps or none. It jumps without sweeping
+/// what is between by [`teleport_collider`](crate::prelude::ClothCommands::teleport_collider); beyond the
+/// [`ColliderTeleportThreshold`](crate::prelude::ColliderTeleportThreshold), by itself. While it is `Disabled` it is no
+/// obstacle, and comes out of nowhere afterwards.
 ///
 /// Made from one of Bevy's primitives: `ClothCollider::from(Sphere::new(0.3))`; also from a `Cuboid`, a `Capsule3d`, a
 /// [`TaperedCapsule`](crate::prelude::TaperedCapsule), a `Cylinder`, a `Cone` and, for a ground, an `InfinitePlane3d`,
@@ -128,7 +132,9 @@ impl ClothCollider {
 #[component(clone_behavior = Ignore)]
 pub(crate) struct ColliderMemory {
     /// World pose at the end of the latest step.
-    pose: Option<Isometry3d>,
+    pose: FromLatestStep<Isometry3d>,
+    /// A message has told that it jumped.
+    told_of_jump: bool,
     /// Why the collider was left out, of which a warning has told.
     said: Option<ColliderError>,
     /// What it is made of, where it is no primitive.
@@ -149,19 +155,40 @@ pub struct Obstacles {
 }
 
 impl Obstacles {
+    /// The world has been shifted, and all of them with it.
+    pub(crate) fn shift(&mut self, by: Vec3) {
+        let by = Vec3A::from(by);
+        for (_, _, obstacle) in &mut self.list {
+            obstacle.start.translation += by;
+            obstacle.end.translation += by;
+            if let Some(body) = &mut obstacle.body {
+                body.centre += by;
+            }
+        }
+    }
+
     /// All of them, with their entity and their layers.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (Entity, u32, &Obstacle)> {
         self.list.iter().map(|(entity, layers, obstacle)| (*entity, *layers, obstacle))
     }
 
-    /// Writes the obstacles that `mask` selects into `near`, relative to `origin`, and whose they are into `owners`.
-    pub(crate) fn around(&self, origin: Vec3, mask: u32, near: &mut Vec<Obstacle>, owners: &mut Vec<Entity>) {
+    /// Writes the obstacles that `mask` selects into `near`, relative to `origin`, and whose they are into `owners`. For a
+    /// cloth that has made a `jump`.
+    pub(crate) fn around(
+        &self,
+        origin: Vec3,
+        mask: u32,
+        jump: Option<Jump>,
+        near: &mut Vec<Obstacle>,
+        owners: &mut Vec<Entity>,
+    ) {
         let origin = Vec3A::from(origin);
+        let start = |start: Isometry3d, end| jump.map_or(start, |jump| jump.start_of(start, end));
         let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - origin, pose.rotation);
         let selected = || self.list.iter().filter(|(_, layers, _)| layers & mask != 0);
         near.clear();
         near.extend(selected().map(|(_, _, obstacle)| Obstacle {
-            start: relative(obstacle.start),
+            start: relative(start(obstacle.start, &obstacle.end)),
             end: relative(obstacle.end),
             body: obstacle.body.map(|body| Body { centre: body.centre - origin, ..body }),
             ..obstacle.clone()
@@ -176,21 +203,22 @@ pub(crate) fn gather_obstacles(
     mut colliders: Query<(Entity, &ClothCollider, &mut ColliderMemory)>,
     mut obstacles: ResMut<Obstacles>,
     poses: Poses,
+    jumps: JumpDetection,
 ) {
     obstacles.list.clear();
     for (entity, collider, mut memory) in &mut colliders {
         let pose = || poses.compute_global_transform(entity).map(|pose| pose.affine()).ok();
         match memory.placed(collider, pose) {
             Ok(Some((shape, end))) => {
-                let start = memory.pose.replace(end).unwrap_or(end);
+                let start = memory.come_to(entity, end, &jumps);
                 memory.said = None;
                 let friction = collider.friction;
                 let obstacle = Obstacle { shape, start, end, rounding: 0.0, friction, body: None };
                 obstacles.list.push((entity, collider.layers, obstacle));
             }
-            Ok(None) => memory.pose = None,
+            Ok(None) => memory.pose.forget(),
             Err(error) => {
-                memory.pose = None;
+                memory.pose.forget();
                 if memory.said.as_ref() != Some(&error) {
                     warn!("collider {entity} is left out: {error}");
                     memory.said = Some(error);
@@ -203,6 +231,28 @@ pub(crate) fn gather_obstacles(
 }
 
 impl ColliderMemory {
+    /// Remembers a pose, and returns the one before it. What has jumped comes from where it is.
+    fn come_to(&mut self, entity: Entity, pose: Isometry3d, jumps: &JumpDetection) -> Isometry3d {
+        let past = jumps.past_pose(entity, &self.pose, &pose);
+        self.pose.set(jumps.step(), pose);
+        if past == PastPose::TooFar && !core::mem::replace(&mut self.told_of_jump, true) {
+            debug!(
+                "collider {entity} has moved so far within a step that it is taken for a teleport: ask for                  teleport_collider, or raise ColliderTeleportThreshold if it is that fast"
+            );
+        }
+        match past {
+            PastPose::Known(past) => past,
+            PastPose::Unknown | PastPose::TooFar => pose,
+        }
+    }
+
+    /// The world has been shifted, and the collider with it.
+    pub fn shift(&mut self, by: Vec3) {
+        if let Some(pose) = self.pose.as_mut() {
+            pose.translation += Vec3A::from(by);
+        }
+    }
+
     /// Shape and world pose of the collider at the end of the coming step. None while its shape is waited for.
     fn placed(
         &self,

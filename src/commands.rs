@@ -7,9 +7,11 @@ use crate::{
     draw::mesh::ClothMesh,
     pins::{PinGroup, PinTarget, Pins, targets_by_particle},
     state::ClothState,
+    teleport::{Along, teleport},
 };
 
-/// Commands for an entity with a [`Cloth`](crate::prelude::Cloth). On any other entity they do nothing.
+/// Commands for an entity with a [`Cloth`](crate::prelude::Cloth), on any other of which they do nothing, and teleports of
+/// any entity.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -29,9 +31,18 @@ pub trait ClothCommands {
     /// Unpins vertices: all that `pins` choose, whatever it says that they be fixed to.
     fn unpin_cloth(&mut self, pins: Pins) -> &mut Self;
 
-    /// Moves the entity to `transform` and the cloth rigidly with it, as if the world had moved: nothing is dragged
-    /// through the space between. Its world pins come along; pins to other entities don't.
+    /// Moves the entity to `transform`, and all cloth that is on it or below it rigidly along, as if the world had moved:
+    /// nothing is dragged through the space between. A whole character is teleported by this, called on its root: its
+    /// cloths, its obstacles, and what is pinned to its bones.
+    ///
+    /// Hands let go, and world pins come along. A pin to an entity that isn't below holds on to that.
     fn teleport_cloth(&mut self, transform: Transform) -> &mut Self;
+
+    /// Moves an obstacle to `transform`, and all obstacles below it, without a way: cloth that is between isn't hit, and
+    /// cloth that lies on it stays behind. What is pinned to it comes along.
+    ///
+    /// For obstacles of every kind, and bodies of physics engines.
+    fn teleport_collider(&mut self, transform: Transform) -> &mut Self;
 }
 
 impl ClothCommands for EntityCommands<'_> {
@@ -61,13 +72,20 @@ impl ClothCommands for EntityCommands<'_> {
     }
 
     fn teleport_cloth(&mut self, transform: Transform) -> &mut Self {
-        self.queue_silenced(move |mut entity: EntityWorldMut| {
-            let Some(mut state) = entity.get_mut::<ClothState>() else { return };
-            state.requests.teleport = true;
-            if let Some(mut place) = entity.get_mut::<Transform>() {
-                *place = transform;
-            }
-        })
+        self.queue_silenced(move |entity: EntityWorldMut| put(entity, transform, Along::Cloths))
+    }
+
+    fn teleport_collider(&mut self, transform: Transform) -> &mut Self {
+        self.queue_silenced(move |entity: EntityWorldMut| put(entity, transform, Along::Colliders))
+    }
+}
+
+/// Puts an entity elsewhere, and what is on it and below it.
+fn put(mut entity: EntityWorldMut, transform: Transform, along: Along) {
+    if let Some(mut place) = entity.get_mut::<Transform>() {
+        *place = transform;
+        let root = entity.id();
+        entity.world_scope(|world| teleport(world, root, along));
     }
 }
 

@@ -21,9 +21,10 @@ use bevy::{
 };
 
 use crate::{
+    clock::ClothRun,
     collider::Obstacles,
     draw::mesh::{ClothMesh, Drawn},
-    schedule::{ClothPlugin, ClothRun, ClothSystems},
+    schedule::{ClothPlugin, ClothSystems},
     state::ClothState,
     wind::Winds,
 };

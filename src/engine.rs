@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use bevy::{math::Isometry3d, prelude::*};
 
-use crate::{collider::Obstacles, solver::Obstacle};
+use crate::{collider::Obstacles, solver::Obstacle, teleport::JumpDetection};
 
 mod bodies;
 mod mounts;
 mod parts;
 mod pushes;
 
+use bodies::Step;
 pub(crate) use bodies::{Bodies, Dynamic, Mover};
 pub(crate) use mounts::{mount_pins, note_carriers, untie_mounted};
 pub(crate) use parts::{Part, Shapes, capsule, mesh};
@@ -70,10 +71,11 @@ impl<S: Send + Sync + 'static> Default for Bridge<S> {
 }
 
 impl<S: Clone + Send + Sync + 'static> Bridge<S> {
-    /// Begins a step of `dt` s.
-    pub fn begin(&mut self, dt: f32) {
+    /// Begins a step.
+    pub fn begin(&mut self, jumps: &JumpDetection) {
         self.shapes.begin();
-        self.bodies.begin(dt);
+        let step = Step { number: jumps.step(), dt: jumps.dt(), threshold: *jumps.threshold };
+        self.bodies.begin(step, &jumps.teleported);
         self.met.clear();
     }
 

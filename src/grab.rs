@@ -177,6 +177,16 @@ impl Grabs {
             held.led -= shift;
         }
     }
+
+    /// Carries what is in the world along with it.
+    pub fn shift_targets(&mut self, by: Vec3) {
+        for held in &mut self.held {
+            held.target += by;
+        }
+        for (_, position) in &mut self.ended {
+            *position += by;
+        }
+    }
 }
 
 /// Plans the way of every grabbed point over the coming step.

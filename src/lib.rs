@@ -46,19 +46,24 @@ pub mod build;
 mod pins;
 
 mod anchor;
+mod clock;
 mod collider;
 mod grab;
 mod origin;
 mod parallel;
+mod pose;
+mod rest_scale;
 mod settings;
 mod simulate;
 pub mod solver;
+mod teleport;
 mod wind;
 
 mod draw;
 
 mod commands;
 mod schedule;
+mod shift;
 
 #[cfg(feature = "avian")]
 mod avian;
@@ -100,8 +105,10 @@ pub mod prelude {
         grid::ClothGrid,
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
+        shift::WorldShiftCommands,
         solver::{LevelPass, SelfCollision, Solid, TaperedCapsule},
         state::ClothState,
+        teleport::ColliderTeleportThreshold,
         wind::{Wind, WindShape},
     };
 }

@@ -1,36 +1,23 @@
 //! The place that a cloth's positions are relative to: it jumps with teleports and follows on long ways.
 
-use bevy::{
-    math::{Affine3A, Vec3A},
-    prelude::*,
-};
+use bevy::{math::Vec3A, prelude::*};
 
-use crate::{
-    anchor::{HeldPin, is_invertible},
-    pins::PinTarget,
-    state::ClothState,
-};
+use crate::{anchor::HeldPin, pins::PinTarget, state::ClothState, teleport::Jump};
 
 /// Positions farther than this from the cloth's origin, m, move the origin: an `f32` then still resolves 0.02 mm.
 const FARTHEST: f32 = 256.0;
 
-/// Carries the cloth rigidly from the pose of its latest step to `pose`, velocities and world pins with it.
-pub(crate) fn teleport(state: &mut ClothState, pose: Affine3A) {
-    if !is_invertible(&state.pose) || !is_invertible(&pose) {
-        return;
-    }
-    // Without the scale, which the springs' lengths don't follow.
-    let turn = Affine3A { matrix3: pose.matrix3 * state.pose.matrix3.inverse(), translation: Vec3A::ZERO };
-    let turn = turn.to_scale_rotation_translation().1;
+/// Carries the cloth rigidly along with a jump, velocities and world pins with it.
+pub(crate) fn carry(state: &mut ClothState, jump: &Jump) {
     state.release_all();
-    let (old_place, old_origin) = (state.pose.translation, Vec3A::from(state.origin));
-    let carry = |p: &mut Vec3A| *p = turn * (*p + (old_origin - old_place));
-    state.origin = pose.translation.into();
+    let old_origin = Vec3A::from(state.origin);
+    let carry = |p: &mut Vec3A| *p = jump.place(*p, old_origin);
+    state.origin = jump.end().into();
     for positions in [&mut state.particles.position, &mut state.step_start] {
         positions.iter_mut().for_each(carry);
     }
     for velocity in &mut state.particles.velocity {
-        *velocity = turn * *velocity;
+        *velocity = jump.direction(*velocity);
     }
     for offset in world_places(&mut state.pins) {
         carry(offset);
@@ -52,6 +39,14 @@ pub(crate) fn stay_near(state: &mut ClothState) {
         *offset -= shift;
     }
     state.grabs.shift(shift);
+}
+
+/// The whole world has been shifted, and the cloth with it.
+pub(crate) fn shift(state: &mut ClothState, by: Vec3) {
+    state.origin += by;
+    state.pose.translation += Vec3A::from(by);
+    state.carriers.iter_mut().for_each(|carrier| carrier.shift(by));
+    state.grabs.shift_targets(by);
 }
 
 /// Places of the pins to the world, which are relative to the cloth's origin.

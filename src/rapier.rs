@@ -74,3 +74,10 @@ impl Plugin for ClothRapierPlugin {
         schedule::bridge(app, "ClothRapierPlugin", Engine::Rapier, PhysicsSet::Writeback, systems);
     }
 }
+
+/// The world has been shifted, and all bodies with it.
+pub(crate) fn shift(world: &mut World, by: Vec3) {
+    if let Some(mut bridge) = world.get_resource_mut::<Bridge<SharedShape>>() {
+        bridge.bodies.shift(by);
+    }
+}

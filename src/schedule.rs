@@ -3,10 +3,7 @@
 use bevy::{
     app::FixedMain,
     asset::AssetEventSystems,
-    ecs::{
-        schedule::{InternedScheduleLabel, ScheduleLabel},
-        system::SystemParam,
-    },
+    ecs::schedule::{InternedScheduleLabel, ScheduleLabel},
     prelude::*,
 };
 
@@ -18,9 +15,11 @@ use bevy::ecs::system::ScheduleSystem;
 #[cfg(any(feature = "avian", feature = "rapier"))]
 use crate::engine::{self, Engine, Pushes};
 use crate::{
-    anchor, build, cloth, collider, draw,
+    anchor, build,
+    clock::{self, ClothRun},
+    cloth, collider, draw,
     fabric::{self, Fabric},
-    grab, settings, simulate, wind,
+    grab, settings, simulate, teleport, wind,
 };
 
 /// The stages of a cloth's frame, in their order. Games order their systems around them.
@@ -98,6 +97,9 @@ impl Plugin for ClothPlugin {
             .init_resource::<collider::Obstacles>()
             .init_resource::<wind::Winds>()
             .init_resource::<build::plan::PlanCache>()
+            .init_resource::<clock::StepNumber>()
+            .init_resource::<teleport::Teleported>()
+            .init_resource::<teleport::ColliderTeleportThreshold>()
             .insert_resource(ClothRun { fixed: self.is_fixed(), parallel: self.parallel })
             .configure_sets(PreUpdate, ClothSystems::Prepare.run_if(has_what_it_needs))
             .configure_sets(
@@ -131,6 +133,8 @@ impl Plugin for ClothPlugin {
                 self.schedule,
                 (
                     (
+                        clock::count_steps,
+                        teleport::forget_teleports,
                         settings::update_settings,
                         anchor::update_pins,
                         anchor::tie_tethers,
@@ -157,7 +161,10 @@ impl Plugin for ClothPlugin {
         #[cfg(feature = "mesh_colliders")]
         app.init_resource::<collider::mesh::PreparedMeshes>().add_systems(
             self.schedule,
-            collider::mesh::prepare_meshes.in_set(ClothSystems::Gather).before(collider::gather_obstacles),
+            collider::mesh::prepare_meshes
+                .in_set(ClothSystems::Gather)
+                .after(teleport::forget_teleports)
+                .before(collider::gather_obstacles),
         );
     }
 
@@ -245,33 +252,4 @@ enum BridgeSystems {
     Gather(Engine),
     /// Pushes an engine's bodies.
     Push(Engine),
-}
-
-/// How the plugin was set up.
-#[derive(Resource, Clone, Copy, Debug)]
-pub(crate) struct ClothRun {
-    fixed: bool,
-    pub parallel: bool,
-}
-
-/// Where the drawn moment lies within the latest step.
-#[derive(SystemParam)]
-pub(crate) struct ClothClock<'w> {
-    run: Res<'w, ClothRun>,
-    fixed: Option<Res<'w, Time<Fixed>>>,
-}
-
-impl ClothClock<'_> {
-    /// Share of the latest step that has passed, 0..=1.
-    pub fn overstep(&self) -> f32 {
-        match &self.fixed {
-            Some(time) if self.run.fixed => time.overstep_fraction().clamp(0.0, 1.0),
-            _ => 1.0,
-        }
-    }
-
-    /// Whether cloths may be worked on side by side.
-    pub fn parallel(&self) -> bool {
-        self.run.parallel
-    }
 }

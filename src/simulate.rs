@@ -13,10 +13,10 @@ use bevy::{
 mod meeting;
 
 use crate::{
+    clock::ClothRun,
     cloth::{ClothGravity, ClothReset, ClothSolver, ClothStatus, ResetCause},
     collider::Obstacles,
     parallel,
-    schedule::ClothRun,
     solver::{self, Member, Particles, Scratch, StepContext, StepReport, Topology},
     state::{ClothState, Given, Work},
     wind::Winds,
@@ -146,8 +146,8 @@ impl<'a> Parts<'a> {
         let material = state.material?;
         state.step_start.clone_from(&state.particles.position);
         let ClothState { particles, topology, origin, settings, effort, work, tethers, .. } = state;
-        let Work { anchors, mounts, mounted, grabs, obstacles: near, owners, winds: felt, .. } = work;
-        surroundings.obstacles.around(*origin, settings.collision_mask, near, owners);
+        let Work { anchors, mounts, mounted, grabs, obstacles: near, owners, winds: felt, jump, .. } = work;
+        surroundings.obstacles.around(*origin, settings.collision_mask, *jump, near, owners);
         surroundings.winds.around(*origin, felt);
         let ctx = StepContext {
             dt,

@@ -9,15 +9,17 @@ use bevy::{
 };
 
 use crate::{
-    anchor::HeldPin,
-    build::{Tying, plan::Awaited, weld::NO_PARTICLE},
+    anchor::{Carrier, HeldPin},
+    build::{BlendWeights, Blending, Tying, plan::Awaited, weld::NO_PARTICLE},
     cloth::{Cloth, ClothSolver},
-    draw::{carrier::Carrier, shading::particle_normals},
+    draw::shading::particle_normals,
     grab::Grabs,
+    rest_scale::RestScale,
     solver::{
         self, Anchor, Effort, Energy, Grab, Material, Mount, Mounted, Obstacle, Particles, Push, StepReport, Strain,
         Stray, Tether, Tethers, Topology, Weave, WindSource,
     },
+    teleport::Jump,
 };
 
 /// Particles of a cloth, in world space. Comes with [`Cloth`](crate::prelude::Cloth); empty until the cloth is ready.
@@ -56,10 +58,16 @@ pub struct ClothState {
     pub(crate) tying: Option<Box<Tying>>,
     /// Points that are held by hand.
     pub(crate) grabs: Grabs,
+    /// The scale that the cloth was built at, and what it has become since.
+    pub(crate) rest_scale: RestScale,
     /// Transform of the entity at the latest step.
     pub(crate) pose: Affine3A,
-    /// The entity that carries the cloth, if one does.
-    pub(crate) carrier: Option<Carrier>,
+    /// What the pins follow.
+    pub(crate) carriers: Vec<Carrier>,
+    /// By which weights its particles are drawn with several carriers.
+    pub(crate) blend_weights: Option<BlendWeights>,
+    /// Weights that are being worked out anew.
+    pub(crate) blending: Option<Box<Blending>>,
     /// Number of steps that moved something since the cloth was built: drawing skips what hasn't moved.
     pub(crate) steps: u64,
     /// The latest step moved nothing.
@@ -87,6 +95,8 @@ pub(crate) struct Requests {
     pub reset: bool,
     /// Carry the cloth along with its entity, as one rigid piece.
     pub teleport: bool,
+    /// It has been reset, and was on an entity at this pose before: what has come along has jumped.
+    pub reset_from: Option<Affine3A>,
 }
 
 /// Which warnings have been given.
@@ -128,6 +138,8 @@ pub(crate) struct Work {
     /// What the bodies among all these have been given.
     pub given: Vec<Given>,
     pub winds: Vec<WindSource>,
+    /// The jump that the cloth has made before the step.
+    pub jump: Option<Jump>,
 }
 
 impl ClothState {
@@ -173,7 +185,8 @@ impl ClothState {
         self.particles.velocity.iter().copied().map(Vec3::from)
     }
 
-    /// World normals of all particles, unit vectors, on the side that the mesh's triangles face. Computed anew.
+    /// World normals of all particles, unit vectors, on the side that the mesh's own normals face; of a mesh without any, the
+    /// side that its triangles face. Computed anew.
     pub fn normals(&self) -> Vec<Vec3> {
         particle_normals(&self.topology.triangles, &self.particles.position, &self.pose.matrix3).collect()
     }

@@ -6,7 +6,7 @@ use bevy::{
 };
 
 use crate::{
-    anchor::Poses,
+    pose::Poses,
     solver::{WindRegion, WindSource, force::wind::Gusts},
 };
 
@@ -130,18 +130,30 @@ pub(crate) struct WindMemory {
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Winds {
     list: Vec<(Entity, WindSource)>,
+    /// How far the world has been shifted since it began, m: gusts and eddies have come along.
+    shift: DVec3,
 }
 
 impl Winds {
     /// Writes all winds into `felt`, relative to `origin`.
     pub fn around(&self, origin: Vec3, felt: &mut Vec<WindSource>) {
+        // As it was before the world was shifted.
+        let unshifted = (origin.as_dvec3() - self.shift).as_vec3a();
         let origin = Vec3A::from(origin);
         felt.clear();
         felt.extend(self.list.iter().map(|&(_, wind)| WindSource {
             region: wind.region.relative_to(origin),
-            origin,
+            origin: unshifted,
             ..wind
         }));
+    }
+
+    /// The world has been shifted, and all winds with it.
+    pub fn shift(&mut self, by: Vec3) {
+        self.shift += by.as_dvec3();
+        for (_, wind) in &mut self.list {
+            wind.region = wind.region.relative_to(Vec3A::from(-by));
+        }
     }
 }
 

@@ -18,6 +18,7 @@ use super::{ClothAvianSettings, shapes};
 use crate::{
     collider::{ClothCollider, Obstacles},
     engine::{Bridge, Dynamic, Met, Mover, NotClothCollider, friction_factor},
+    teleport::JumpDetection,
 };
 
 /// A collider of Avian's.
@@ -41,11 +42,11 @@ pub(super) fn gather_colliders(
     colliders: Query<AvianCollider, IsMet>,
     bodies: Query<(RigidBodyQueryReadOnly, Has<RigidBodyDisabled>, Has<NotClothCollider>)>,
     (settings, default_friction): (Res<ClothAvianSettings>, Option<Res<DefaultFriction>>),
-    time: Res<Time>,
+    jumps: JumpDetection,
     mut bridge: ResMut<Bridge<SharedShape>>,
     mut obstacles: ResMut<Obstacles>,
 ) {
-    bridge.begin(time.delta_secs());
+    bridge.begin(&jumps);
     let default_friction = default_friction.map_or_else(Friction::default, |default| default.0);
     for it in &colliders {
         let layers = it.layers.copied().unwrap_or_default();

@@ -14,7 +14,7 @@ use super::{
     system::MeshNews,
 };
 use crate::{
-    anchor::{self, Poses},
+    anchor,
     cloth::{Cloth, ClothFailed, ClothReady, ClothReset, ClothStatus, ResetCause},
     draw::{
         binding::Binding,
@@ -24,8 +24,11 @@ use crate::{
     fabric::{ClothSprings, Fabric, fineness},
     origin,
     pins::{PinTarget, Pins, targets_by_particle},
+    pose::{Poses, is_invertible},
+    rest_scale::RestScale,
     solver::{Material, Particles, Tethers},
-    state::ClothState,
+    state::{ClothState, Requests},
+    teleport::Jump,
 };
 
 /// All that building a cloth looks at.
@@ -119,7 +122,7 @@ impl CandidateItem<'_, '_> {
             .compute_global_transform(self.entity)
             .map(|global| global.affine())
             .ok()
-            .filter(anchor::is_invertible)
+            .filter(is_invertible)
             .ok_or(ClothError::FlatTransform)?;
         let awaited = self.awaited(pose.matrix3);
         // Settings count as they are when all is done.
@@ -204,14 +207,15 @@ impl CandidateItem<'_, '_> {
             topology: plan.topology.clone(),
             settings: Cloth::clone(&self.cloth),
             material: Some(material),
+            rest_scale: RestScale::new(to_world),
             pose: Affine3A { matrix3: to_world, ..pose },
             said: self.state.said,
             // Goes on counting, so that what is drawn of the new cloth isn't taken for the old one's.
             steps: self.state.steps + 1,
             ..default()
         };
-        if to_world != pose.matrix3 {
-            origin::teleport(&mut state, pose);
+        if let Some(turn) = Jump::between(state.pose, pose).filter(|_| to_world != pose.matrix3) {
+            origin::carry(&mut state, &turn);
             state.pose = pose;
         }
         state
@@ -250,7 +254,9 @@ impl CandidateItem<'_, '_> {
         };
         self.state.release_all();
         let grabs = core::mem::take(&mut self.state.grabs);
-        *self.state = ClothState { grabs, ..built.state };
+        let reset_from = (cause != Cause::First).then_some(self.state.pose);
+        let requests = Requests { reset_from, ..default() };
+        *self.state = ClothState { grabs, requests, ..built.state };
         *self.status = ClothStatus::Ready;
         fineness::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &mut self.state);
         if self.mesh.0 != drawn {

@@ -23,7 +23,7 @@ pub(super) fn find(
 
 /// The triangle as a patch of cloth. With its sides' coordinates along warp and weft as columns of a matrix, the weights of
 /// the sides that make a step along the warp are the first column of its inverse, and those along the weft the second.
-fn face(rest: &[Vec3], particles: [u32; 3], warp: Vec3) -> Option<Face> {
+pub(super) fn face(rest: &[Vec3], particles: [u32; 3], warp: Vec3) -> Option<Face> {
     let [a, b, c] = particles.map(|i| rest[i as usize]);
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac).try_normalize()?;

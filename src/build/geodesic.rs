@@ -56,7 +56,7 @@ impl Tying {
     /// Settles as many as `most` distances. True where all are settled.
     pub fn go_on(&mut self, topology: &Topology, most: usize) -> bool {
         let search = self.search.get_or_insert_with(|| {
-            let mut search = Search::new(topology);
+            let mut search = Search::new(topology, Kept::AllRound);
             for &pin in &self.pins {
                 search.propose(pin, pin, 0.0);
             }
@@ -83,7 +83,7 @@ impl Tying {
 pub fn grab_tethers(topology: &Topology, triangle: [u32; 3], weights: [f32; 3]) -> Vec<GrabTether> {
     let rest = triangle.map(|particle| topology.rest[particle as usize]);
     let point = rest[0] * weights[0] + rest[1] * weights[1] + rest[2] * weights[2];
-    let mut search = Search::new(topology);
+    let mut search = Search::new(topology, Kept::AllRound);
     for (particle, corner) in triangle.into_iter().zip(rest) {
         // The point isn't a particle: one of its corners names it.
         search.propose(particle, triangle[0], corner.distance(point));
@@ -93,19 +93,29 @@ pub fn grab_tethers(topology: &Topology, triangle: [u32; 3], weights: [f32; 3]) 
     reached.filter_map(|(particle, labels)| Some(GrabTether { particle, length: labels.first()?.distance })).collect()
 }
 
-/// A pin and how far it is.
+/// A pin, or what stands for some of them, and how far it is.
 #[derive(Clone, Copy, Debug)]
-struct Label {
-    pin: u32,
-    distance: f32,
+pub(super) struct Label {
+    pub pin: u32,
+    pub distance: f32,
+}
+
+/// Which distances are kept of those to all pins.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kept {
+    /// Those to the nearest few pins in different directions.
+    AllRound,
+    /// So many, the shortest.
+    Nearest(usize),
 }
 
 #[derive(Clone, Debug)]
-struct Search {
+pub(super) struct Search {
+    kept: Kept,
     /// Triangles at each particle, as the other two corners; cells are split along both diagonals.
     fans: Grouped<[u32; 2]>,
     /// What is settled, nearest first.
-    labels: Vec<Vec<Label>>,
+    pub labels: Vec<Vec<Label>>,
     /// The shortest proposal for each particle and pin so far.
     proposed: Vec<Vec<Label>>,
     /// Proposals (distance, particle, pin), the shortest first.
@@ -113,12 +123,13 @@ struct Search {
 }
 
 impl Search {
-    fn new(topology: &Topology) -> Self {
+    pub fn new(topology: &Topology, kept: Kept) -> Self {
         let crossed = topology.cells.iter().flat_map(|&[a, b, c, d]| [[a, b, d], [b, c, d]]);
         let triangles = topology.triangles.iter().copied().chain(crossed);
         let corners = triangles.flat_map(|[i, j, k]| [(i, [j, k]), (j, [k, i]), (k, [i, j])]);
         let fans = Grouped::new(topology.particle_count(), corners);
         Self {
+            kept,
             fans,
             labels: vec![Vec::new(); topology.particle_count()],
             proposed: vec![Vec::new(); topology.particle_count()],
@@ -126,7 +137,8 @@ impl Search {
         }
     }
 
-    fn propose(&mut self, particle: u32, pin: u32, distance: f32) {
+    /// Proposes a distance of a particle to a pin, m.
+    pub fn propose(&mut self, particle: u32, pin: u32, distance: f32) {
         let proposed = &mut self.proposed[particle as usize];
         match proposed.iter_mut().find(|label| label.pin == pin) {
             Some(label) if label.distance <= distance => return,
@@ -137,7 +149,7 @@ impl Search {
     }
 
     /// Settles as many as `most` distances on the rest shape `rest`. True where all are settled.
-    fn run(&mut self, rest: &[Vec3], most: usize) -> bool {
+    pub fn run(&mut self, rest: &[Vec3], most: usize) -> bool {
         let mut settled = 0;
         while settled < most {
             let Some(Reverse((FloatOrd(distance), particle, pin))) = self.queue.pop() else { return true };
@@ -152,12 +164,15 @@ impl Search {
 
     fn is_wanted(&self, rest: &[Vec3], particle: u32, pin: u32, distance: f32) -> bool {
         let labels = &self.labels[particle as usize];
-        let place = rest[pin as usize];
-        labels.len() < MOST_TETHERS
-            && labels.iter().all(|label| {
-                let apart = place.distance(rest[label.pin as usize]);
-                label.pin != pin && apart >= TELLING_APART * distance
-            })
+        let is_new = labels.iter().all(|label| label.pin != pin);
+        match self.kept {
+            Kept::Nearest(count) => is_new && labels.len() < count,
+            Kept::AllRound => {
+                let apart = |label: &Label| rest[pin as usize].distance(rest[label.pin as usize]);
+                let is_telling = |label: &Label| apart(label) >= TELLING_APART * distance;
+                is_new && labels.len() < MOST_TETHERS && labels.iter().all(is_telling)
+            }
+        }
     }
 
     /// Proposes distances for all neighbours of a particle that has just been settled.

@@ -148,7 +148,7 @@ impl KnownPlans {
 impl Plan {
     /// Makes the plan for `mesh`, of parts that are `known` where they are.
     fn make(mesh: &Mesh, to_world: Mat3A, known: &KnownPlans) -> Result<Self, ClothError> {
-        let source = SourceMesh::read(mesh)?;
+        let source = SourceMesh::read(mesh)?.wound_by_normals();
         let positions = source.positions.iter().map(Vec3::to_array).collect();
         let key = (hash(&source), bits(to_world));
         if let Some((topology, binding)) = known.get(&key) {

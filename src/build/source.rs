@@ -41,6 +41,22 @@ impl SourceMesh {
         let (normals, warp) = (directions(Mesh::ATTRIBUTE_NORMAL), directions(ATTRIBUTE_WARP));
         Ok(Self { positions, triangles, normals, uvs: read_uvs(mesh), warp, tangents })
     }
+
+    /// Winds each triangle so that it faces the side that the normals of its corners face, by their sum.
+    ///
+    /// A mesh is shown by its own normals, however its triangles are wound: some exporters turn single ones over, or write
+    /// each twice, once from either side. What is worked out from triangles would cancel out there.
+    pub fn wound_by_normals(mut self) -> Self {
+        let Some(normals) = &self.normals else { return self };
+        for triangle in &mut self.triangles {
+            let [a, b, c] = triangle.map(|i| self.positions[i as usize]);
+            let faced: Vec3 = triangle.iter().map(|&i| normals[i as usize].normalize_or_zero()).sum();
+            if (b - a).cross(c - a).dot(faced) < 0.0 {
+                triangle.swap(1, 2);
+            }
+        }
+        self
+    }
 }
 
 /// The first UV of each vertex, where the mesh has them.

@@ -8,10 +8,10 @@ use bevy::{
 
 use super::{candidate::Candidate, plan::PlanCache};
 use crate::{
-    anchor::Poses,
     cloth::{Cloth, ClothStatus},
     draw::mesh::{self, ClothMesh},
     error::ClothError,
+    pose::Poses,
     state::ClothState,
 };
 

@@ -13,6 +13,7 @@ use crate::{
     cloth::Cloth,
     error::ClothError,
     solver::{MeshShape, Shape},
+    teleport::{JumpDetection, PastPose},
 };
 use library::Library;
 use posed::Posed;
@@ -74,6 +75,7 @@ pub(crate) fn prepare_meshes(
     mut mesh_events: MessageReader<AssetEvent<Mesh>>,
     mut prepared: ResMut<PreparedMeshes>,
     library: Library,
+    jumps: JumpDetection,
     mut joints: Local<Vec<Affine3A>>,
 ) {
     let changed = mesh_events.read().filter_map(|event| match event {
@@ -85,7 +87,7 @@ pub(crate) fn prepare_meshes(
     for mut collider in &mut colliders {
         let placed = match collider.collider.shape {
             ColliderShape::Solid(_) => Ok(None),
-            _ => collider.place(&library, &mut prepared, &mut joints),
+            _ => collider.place(&library, &mut prepared, &jumps, &mut joints),
         };
         let triangles = &mut collider.memory.triangles;
         if !matches!(placed, Ok(Some(_))) && triangles.in_force.is_some() {
@@ -101,6 +103,7 @@ impl MeshColliderItem<'_, '_> {
         &mut self,
         library: &Library,
         prepared: &mut PreparedMeshes,
+        jumps: &JumpDetection,
         joints: &mut Vec<Affine3A>,
     ) -> Result<Option<(Shape, Isometry3d)>, ColliderError> {
         let source = self.source(library)?;
@@ -123,13 +126,20 @@ impl MeshColliderItem<'_, '_> {
         let skin = skin.as_ref().filter(|_| skeleton.is_some());
         if skin.is_some() != triangles.posed.is_any() {
             // A skeleton has come or gone, and with it the frame that the pose is of.
-            (*pose, triangles.posed) = (None, Posed::default());
+            pose.forget();
+            triangles.posed = Posed::default();
         }
+        if let Some(&joint) = skeleton.and_then(|skeleton| skeleton.joints.first())
+            && jumps.is_teleported(joint)
+        {
+            pose.forget();
+        }
+        let is_new = !matches!(jumps.past_pose(self.entity, pose, &end), PastPose::Known(_));
         let deformed = match skin {
             Some(skin) if skin.joint_count > joints.len() => {
                 return Err(ColliderError::Skeleton { needed: skin.joint_count, found: joints.len() });
             }
-            Some(skin) => Some(triangles.posed.follow(skin, joints, pose.is_none())?),
+            Some(skin) => Some(triangles.posed.follow(skin, joints, is_new)?),
             None => None,
         };
         Ok(Some((Shape::Mesh(MeshShape { mesh: mesh.clone(), deformed }), end)))

@@ -1,39 +1,76 @@
-//! Cloth is drawn with the entity that carries it.
+//! Cloth is drawn with what carries it.
 //!
 //! A step ends up to a step before the moment that is drawn, and drawing interpolates up to one more behind it, while
-//! entities are drawn where they are: a cape would trail behind its wearer. So a cloth whose pins all follow one entity
-//! is drawn as it hung on that entity, wherever the entity is by now.
+//! entities are drawn where they are: a cape would trail behind its wearer. So a cloth is drawn as it hung on what its pins
+//! follow, wherever that is by now. Where pins follow several entities, each particle goes with them by its distances along
+//! the cloth: those that are pinned are drawn at their pins.
 
 use bevy::{
     math::{Affine3A, Vec3A},
     prelude::*,
 };
 
-use crate::anchor::is_invertible;
+use crate::{anchor::Carrier, build::BlendWeights, pose::is_invertible, state::ClothState};
 
-/// The entity that all pins of a cloth follow, and its way over the latest step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Carrier {
-    /// The entity.
-    pub entity: Entity,
-    /// Its pose when the step began.
-    pub start: Affine3A,
-    /// Its pose when the step ended.
-    pub end: Affine3A,
+/// What takes the particles of a cloth from a moment of its latest step to where they are drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Carry {
+    /// For what none of the carriers carries.
+    alone: Affine3A,
+    /// For what is carried by each of them.
+    carriers: Vec<Affine3A>,
+}
+
+impl Carry {
+    /// Finds where particles that are relative to the cloth's origin, at the fraction `now` (0..=1) of the latest step, are
+    /// relative to `place`. What carries the cloth is at `poses` by now.
+    pub fn update(&mut self, state: &ClothState, now: f32, place: Vec3A, poses: &Query<&GlobalTransform>) {
+        let origin = Vec3A::from(state.origin);
+        self.alone = Affine3A::from_translation((origin - place).into());
+        self.carriers.clear();
+        // Until the next step does a teleport, the cloth is drawn as if it had been done.
+        if state.requests.teleport {
+            return;
+        }
+        self.carriers.extend(state.carriers.iter().map(|carrier| {
+            let pose = carrier.entity.and_then(|entity| poses.get(entity).ok()).map(GlobalTransform::affine);
+            pose.and_then(|pose| carrier.carry(origin, now, pose, place)).unwrap_or(self.alone)
+        }));
+    }
+
+    /// The weights of several carriers, where any of them has moved on.
+    pub fn weights<'a>(&self, state: &'a ClothState) -> Option<&'a BlendWeights> {
+        state.blend_weights.as_ref().filter(|_| self.carriers.iter().any(|carry| *carry != self.alone))
+    }
+
+    /// What carries all particles, where there are no weights.
+    pub fn whole(&self) -> Affine3A {
+        match *self.carriers {
+            [carry] => carry,
+            _ => self.alone,
+        }
+    }
+
+    /// Where a particle is drawn that follows the carriers by such weights.
+    pub fn blend(&self, place: Vec3A, mut weights: impl Iterator<Item = (usize, f32)>) -> Vec3A {
+        let carried = |(carrier, weight): (usize, f32)| self.carriers[carrier].transform_point3a(place) * weight;
+        let Some(first) = weights.next() else { return self.alone.transform_point3a(place) };
+        weights.map(carried).fold(carried(first), |sum, part| sum + part)
+    }
 }
 
 impl Carrier {
     /// What takes points that are relative to `origin`, at the fraction `now` (0..=1) of the latest step, to the world
-    /// relative to `place`, with the carrier at `pose`.
-    pub fn carry(&self, origin: Vec3A, now: f32, pose: Affine3A, place: Vec3A) -> Affine3A {
+    /// relative to `place`, with the carrier at `pose`. None where it hasn't moved, or was flat.
+    fn carry(&self, origin: Vec3A, now: f32, pose: Affine3A, place: Vec3A) -> Option<Affine3A> {
         let then = lerp(self.start, self.end, now);
         if pose == then || !is_invertible(&then) {
-            return Affine3A::from_translation((origin - place).into());
+            return None;
         }
         let matrix3 = pose.matrix3 * then.matrix3.inverse();
         // Differences first: far from the world's origin, only they have precision left.
         let translation = matrix3 * (origin - then.translation) + (pose.translation - place);
-        Affine3A { matrix3, translation }
+        Some(Affine3A { matrix3, translation })
     }
 }
 

@@ -9,8 +9,8 @@ use bevy::{
     prelude::*,
 };
 
-use super::{binding::Binding, carrier::Carrier, shading};
-use crate::{anchor::is_invertible, build::weld::NO_PARTICLE, parallel, schedule::ClothClock, state::ClothState};
+use super::{binding::Binding, carrier::Carry, shading};
+use crate::{build::weld::NO_PARTICLE, clock::ClothClock, parallel, pose::is_invertible, state::ClothState};
 
 /// The meshes of a cloth: the one that it was made from, and its own copy, which is drawn.
 #[derive(Component, Clone, Debug)]
@@ -35,7 +35,10 @@ pub(crate) struct Drawn {
     /// The box around all particles.
     pub bounds: Option<Aabb3d>,
     /// What the data was computed from; the same again needs no work.
-    key: Option<(u64, f32, Affine3A, Affine3A)>,
+    key: Option<(u64, f32, Affine3A)>,
+    carry: Carry,
+    /// What it is found in.
+    next_carry: Carry,
     /// The mesh asset doesn't have the data yet.
     is_new: bool,
     /// Position of each particle; none before the first time.
@@ -55,11 +58,7 @@ pub(crate) fn shape_cloths(
         let ClothMesh { binding, shape, .. } = &mut *mesh;
         // Until the next step does a teleport, the cloth is drawn as if it had been done.
         let pose = if state.requests.teleport { state.pose } else { transform.affine() };
-        let carried_by = |carrier: &Carrier| {
-            let pose = poses.get(carrier.entity).ok().filter(|_| !state.requests.teleport)?;
-            Some((*carrier, pose.affine()))
-        };
-        shape.update(state, binding, pose, state.carrier.as_ref().and_then(carried_by), now);
+        shape.update(state, binding, pose, &poses, now);
     });
 }
 
@@ -89,34 +88,40 @@ impl Drawn {
         Self { positions, ..default() }
     }
 
-    /// Interpolates the latest step at `now` (0..=1) and shades it. `pose` takes the mesh to the world; `carrier` is
-    /// where the entity that carries the cloth is by now.
+    /// Interpolates the latest step at `now` (0..=1) and shades it. `pose` takes the mesh to the world, and `poses` are those
+    /// of all entities by now.
     fn update(
         &mut self,
         state: &ClothState,
         binding: &Binding,
         pose: Affine3A,
-        carrier: Option<(Carrier, Affine3A)>,
+        poses: &Query<&GlobalTransform>,
         now: f32,
     ) {
-        // Differences first: far from the world's origin, only they have precision left.
-        let origin = Vec3A::from(state.origin);
-        let carry = match carrier {
-            Some((carrier, place)) => carrier.carry(origin, now, place, pose.translation),
-            None => Affine3A::from_translation((origin - pose.translation).into()),
-        };
         // Where nothing has moved, each moment of the step looks the same.
         let now = if state.is_still { 1.0 } else { now };
-        let key = (state.steps, now, pose, carry);
-        if state.particles.is_empty() || self.key == Some(key) || !is_invertible(&pose) {
+        let key = (state.steps, now, pose);
+        self.next_carry.update(state, now, pose.translation, poses);
+        let is_known = self.key == Some(key) && self.carry == self.next_carry;
+        if state.particles.is_empty() || is_known || !is_invertible(&pose) {
             return;
         }
+        core::mem::swap(&mut self.carry, &mut self.next_carry);
         self.key = Some(key);
         self.is_new = true;
         let to_local = pose.matrix3.inverse();
-        let steps = state.step_start.iter().zip(&state.particles.position);
+        let places = state.step_start.iter().zip(&state.particles.position).map(|(start, &end)| start.lerp(end, now));
         self.particles.clear();
-        self.particles.extend(steps.map(|(start, &end)| to_local * carry.transform_point3a(start.lerp(end, now))));
+        match self.carry.weights(state) {
+            Some(weights) => {
+                let carried = places.enumerate().map(|(i, place)| self.carry.blend(place, weights.of(i)));
+                self.particles.extend(carried.map(|place| to_local * place));
+            }
+            None => {
+                let carry = self.carry.whole();
+                self.particles.extend(places.map(|place| to_local * carry.transform_point3a(place)));
+            }
+        }
         for (place, &particle) in self.positions.iter_mut().zip(&*binding.particle_of_vertex) {
             if particle != NO_PARTICLE {
                 *place = self.particles[particle as usize].to_array();

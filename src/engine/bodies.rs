@@ -6,7 +6,11 @@ use bevy::{
     prelude::*,
 };
 
-use crate::solver::Body;
+use crate::{
+    clock::StepNumber,
+    solver::Body,
+    teleport::{ColliderTeleportThreshold, Teleported},
+};
 
 /// A body, or a collider of its own, as an engine has left it.
 #[derive(Clone, Copy, Debug)]
@@ -43,11 +47,16 @@ pub(crate) struct Way {
 #[derive(Debug, Default)]
 pub(crate) struct Bodies {
     known: HashMap<Entity, Past, FixedHasher>,
-    /// Number of the present step.
-    step: u64,
-    /// Duration of the present step, s.
-    dt: f32,
-    in_use: usize,
+    step: Step,
+}
+
+/// A step, and what has jumped before it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Step {
+    pub number: StepNumber,
+    /// Duration, s.
+    pub dt: f32,
+    pub threshold: ColliderTeleportThreshold,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +65,7 @@ struct Past {
     end: Isometry3d,
     speed: f32,
     /// The step that it belongs to.
-    step: u64,
+    step: StepNumber,
 }
 
 /// A body that forces move may come this much farther within a step than its velocity says, m: engines push bodies out of
@@ -64,35 +73,35 @@ struct Past {
 const UNEXPLAINED: f32 = 0.1;
 
 impl Bodies {
-    /// Begins another step, of `dt` s, and forgets the bodies that the latest hasn't seen.
-    pub fn begin(&mut self, dt: f32) {
-        if self.known.len() > self.in_use {
-            let step = self.step;
-            self.known.retain(|_, past| past.step == step);
-        }
-        (self.step, self.dt, self.in_use) = (self.step + 1, dt, 0);
+    /// Begins another step, and forgets the bodies that the latest hasn't seen, and those that have been `teleported`.
+    pub fn begin(&mut self, step: Step, teleported: &Teleported) {
+        let latest = self.step.number;
+        self.known.retain(|&entity, past| past.step == latest && !teleported.contains_lately(entity, step.number));
+        self.step = step;
     }
 
     /// The way of a body from where the latest step has left it to where it is now.
     pub fn way(&mut self, entity: Entity, mover: &Mover) -> Way {
         let Mover { pose: end, dynamic } = *mover;
         let speed = dynamic.map_or(0.0, |dynamic| dynamic.velocity.length());
-        let step = self.step;
+        let Step { number: step, dt, threshold } = self.step;
         let past = self.known.get(&entity).copied();
         let start = match past {
             // Of another collider of the same body.
             Some(past) if past.step == step => past.start,
-            Some(past) if past.step + 1 == step => {
-                let explained = 2.0 * self.dt * speed.max(past.speed) + UNEXPLAINED;
-                let is_put = dynamic.is_some() && past.end.translation.distance(end.translation) > explained;
+            Some(past) => {
+                let way = past.end.translation.distance(end.translation);
+                let is_put = match dynamic {
+                    Some(_) => way > 2.0 * dt * speed.max(past.speed) + UNEXPLAINED,
+                    None => threshold.is_exceeded(way, dt),
+                };
                 if is_put { end } else { past.end }
             }
             // It wasn't there.
-            _ => end,
+            None => end,
         };
         if past.is_none_or(|past| past.step != step) {
             self.known.insert(entity, Past { start, end, speed, step });
-            self.in_use += 1;
         }
         let body = dynamic.filter(|dynamic| dynamic.inverse_mass > 0.0).map(|dynamic| Body {
             inverse_mass: dynamic.inverse_mass,
@@ -106,6 +115,14 @@ impl Bodies {
     pub fn moved(&mut self, entity: Entity, pose: Isometry3d, velocity: Vec3) {
         if let Some(past) = self.known.get_mut(&entity) {
             (past.end, past.speed) = (pose, velocity.length());
+        }
+    }
+
+    /// The world has been shifted, and all bodies with it.
+    pub fn shift(&mut self, by: Vec3) {
+        for past in self.known.values_mut() {
+            past.start.translation += Vec3A::from(by);
+            past.end.translation += Vec3A::from(by);
         }
     }
 }
@@ -124,8 +141,13 @@ mod tests {
         Mover { pose: Isometry3d::from_translation(Vec3::X * x), dynamic: Some(dynamic) }
     }
 
+    fn begin(bodies: &mut Bodies, teleported: &Teleported) {
+        let number = bodies.step.number.later(1);
+        bodies.begin(Step { number, dt: 0.1, ..default() }, teleported);
+    }
+
     fn start_of(bodies: &mut Bodies, mover: &Mover) -> f32 {
-        bodies.begin(0.1);
+        begin(bodies, &Teleported::default());
         bodies.way(Entity::PLACEHOLDER, mover).start.translation.x
     }
 
@@ -143,15 +165,37 @@ mod tests {
         let mut bodies = Bodies::default();
         start_of(&mut bodies, &at(0.0, 5.0));
         assert_eq!(start_of(&mut bodies, &at(3.0, 5.0)), 3.0);
-        let led = Mover { dynamic: None, ..at(9.0, 0.0) };
-        assert_eq!(start_of(&mut bodies, &led), 3.0, "one that its user moves does sweep");
+        let led = |x: f32| Mover { dynamic: None, ..at(x, 0.0) };
+        assert_eq!(start_of(&mut bodies, &led(8.5)), 3.0, "one that its user moves does sweep");
+        assert_eq!(start_of(&mut bodies, &led(15.0)), 15.0, "but not as fast as nothing moves");
+    }
+
+    #[test]
+    fn a_body_that_is_teleported_sweeps_nothing_though_its_engine_moves_it_a_step_late() {
+        let mut bodies = Bodies::default();
+        start_of(&mut bodies, &at(0.0, 5.0));
+        let mut teleported = Teleported::default();
+        teleported.insert(Entity::PLACEHOLDER, bodies.step.number);
+        for x in [0.0, 0.4] {
+            begin(&mut bodies, &teleported);
+            assert_eq!(bodies.way(Entity::PLACEHOLDER, &at(x, 5.0)).start.translation.x, x);
+        }
+        assert_eq!(start_of(&mut bodies, &at(0.8, 5.0)), 0.4);
+    }
+
+    #[test]
+    fn a_body_goes_along_with_a_shifted_world() {
+        let mut bodies = Bodies::default();
+        start_of(&mut bodies, &at(0.0, 5.0));
+        bodies.shift(Vec3::X * 100.0);
+        assert_eq!(start_of(&mut bodies, &at(100.2, 5.0)), 100.0);
     }
 
     #[test]
     fn a_body_that_was_away_comes_out_of_nowhere() {
         let mut bodies = Bodies::default();
         start_of(&mut bodies, &at(0.0, 5.0));
-        bodies.begin(0.1);
+        begin(&mut bodies, &Teleported::default());
         assert_eq!(start_of(&mut bodies, &at(0.2, 5.0)), 0.2);
     }
 
@@ -159,7 +203,7 @@ mod tests {
     fn the_centre_of_mass_is_that_at_the_start() {
         let mut bodies = Bodies::default();
         start_of(&mut bodies, &at(1.0, 5.0));
-        bodies.begin(0.1);
+        begin(&mut bodies, &Teleported::default());
         let way = bodies.way(Entity::PLACEHOLDER, &at(1.5, 5.0));
         assert_eq!(way.body.map(|body| body.centre), Some(Vec3A::new(1.0, 1.0, 0.0)));
     }

@@ -4,10 +4,11 @@ use bevy::{math::Vec3A, prelude::*};
 
 use super::{Bodies, Mover};
 use crate::{
-    anchor::{self, Poses},
+    anchor,
     build::Tying,
     cloth::ClothStatus,
     pins::PinTarget,
+    pose::Poses,
     solver::{Body, Mount, Mounted},
     state::ClothState,
 };
@@ -68,8 +69,9 @@ pub(crate) fn untie_mounted(mut cloths: Query<(&mut ClothState, &ClothStatus)>) 
         let work = &state.work;
         state.mounted.clear();
         state.mounted.extend(work.mounted.iter().map(|it| work.anchors[it.anchor as usize].particle));
-        let (mounted, pins) = (&state.mounted, &state.pins);
-        state.tethers.keep(|pin| !mounted.contains(&pin));
+        let mounted = state.mounted.clone();
+        state.keep_tethers(|pin| !mounted.contains(&pin));
+        let pins = &state.pins;
         let tied = pins.iter().map(|pin| pin.particle).filter(|particle| !mounted.contains(particle));
         state.tying = Some(Box::new(Tying::begin(tied.collect())));
     }
@@ -81,10 +83,11 @@ pub(crate) fn note_carriers(mut cloths: Query<&mut ClothState>, poses: Poses) {
         if state.work.mounts.is_empty() {
             continue;
         }
-        let carrier = state.carrier.map(|carrier| carrier.entity);
-        let end = carrier.and_then(|entity| poses.compute_global_transform(entity).ok());
-        if let Some((carrier, end)) = state.bypass_change_detection().carrier.as_mut().zip(end) {
-            carrier.end = end.affine();
+        for carrier in &mut state.bypass_change_detection().carriers {
+            let end = carrier.entity.and_then(|entity| poses.compute_global_transform(entity).ok());
+            if let Some(end) = end {
+                carrier.end = end.affine();
+            }
         }
     }
 }

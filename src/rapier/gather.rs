@@ -15,6 +15,7 @@ use super::{ClothRapierSettings, shapes};
 use crate::{
     collider::{ClothCollider, Obstacles},
     engine::{Bridge, Dynamic, Met, Mover, NotClothCollider, friction_factor},
+    teleport::JumpDetection,
 };
 
 /// Adds Rapier's colliders to the obstacles of the coming step.
@@ -25,11 +26,12 @@ pub(super) fn gather_colliders(
     >,
     contexts: Query<(&RapierRigidBodySet, &RapierContextColliders)>,
     left_out: Query<(), With<NotClothCollider>>,
-    (settings, time): (Res<ClothRapierSettings>, Res<Time>),
+    settings: Res<ClothRapierSettings>,
+    jumps: JumpDetection,
     mut bridge: ResMut<Bridge<SharedShape>>,
     mut obstacles: ResMut<Obstacles>,
 ) {
-    bridge.begin(time.delta_secs());
+    bridge.begin(&jumps);
     for (entity, handle, context) in &colliders {
         let Ok((bodies, colliders)) = contexts.get(context.0) else { continue };
         let Some(collider) = colliders.colliders.get(handle.0) else { continue };

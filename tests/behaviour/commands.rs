@@ -131,13 +131,27 @@ fn commands_for_what_is_no_cloth_do_nothing() {
     app.world_mut().despawn(gone);
     for entity in [stone, gone] {
         command(&mut app, entity, |entity| {
-            entity.reset_cloth().pin_cloth(Pins::corners()).unpin_cloth(Pins::corners());
-            entity.teleport_cloth(Transform::default())
+            entity.reset_cloth().pin_cloth(Pins::corners()).unpin_cloth(Pins::corners())
         });
     }
     run(&mut app, 2);
     assert_eq!(*get::<Transform>(&app, stone), Transform::from_xyz(1.0, 2.0, 3.0));
     assert!(!app.world().entity(stone).contains::<Pins>());
+}
+
+#[test]
+fn a_teleport_moves_whatever_it_is_asked_of() {
+    let mut app = headless();
+    let stone = app.world_mut().spawn(Transform::from_xyz(1.0, 2.0, 3.0)).id();
+    let [bare, gone] = [(); 2].map(|()| app.world_mut().spawn_empty().id());
+    app.world_mut().despawn(gone);
+    for entity in [stone, bare, gone] {
+        command(&mut app, entity, |entity| entity.teleport_cloth(Transform::from_xyz(4.0, 0.0, 0.0)));
+        command(&mut app, entity, |entity| entity.teleport_collider(Transform::from_xyz(5.0, 0.0, 0.0)));
+    }
+    run(&mut app, 2);
+    assert_eq!(*get::<Transform>(&app, stone), Transform::from_xyz(5.0, 0.0, 0.0));
+    assert!(!app.world().entity(bare).contains::<Transform>());
 }
 
 #[test]

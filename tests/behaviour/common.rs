@@ -114,6 +114,38 @@ pub fn pinned(app: &App, entity: Entity) -> Vec<usize> {
     (0..vertices).filter(|&vertex| state.particle_of_vertex(vertex).is_some_and(|p| state.is_pinned(p))).collect()
 }
 
+/// By how much the sides of a cloth's triangles are longer or shorter than at rest, no unit: the largest of all.
+pub fn largest_strain(app: &App, entity: Entity) -> f32 {
+    let state = state(app, entity);
+    let (places, rest): (Vec<Vec3>, _) = (state.positions_from_origin().collect(), &state.topology().rest);
+    let sides = state.triangles().iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+    let strain = |(a, b): (u32, u32)| {
+        let length = |places: &[Vec3]| places[a as usize].distance(places[b as usize]);
+        (length(&places) / length(rest) - 1.0).abs()
+    };
+    sides.map(strain).fold(0.0, f32::max)
+}
+
+/// Moves inner vertices of a flat grid in its own plane by up to this share of a cell: triangles that form no rows and
+/// columns.
+pub fn uneven(grid: ClothGrid, share: f32) -> Mesh {
+    let (size, UVec2 { x: columns, y: rows }) = (grid.size, grid.particles);
+    let cell = size / (grid.particles - 1).as_vec2();
+    let mut mesh = Mesh::from(grid);
+    let Some(VertexAttributeValues::Float32x3(places)) = mesh.attribute_mut(Mesh::ATTRIBUTE_POSITION) else {
+        panic!("a grid has positions");
+    };
+    let down = if grid.lying { 2 } else { 1 };
+    for (k, place) in places.iter_mut().enumerate() {
+        let (column, row) = (k as u32 % columns, k as u32 / columns);
+        if (1..columns - 1).contains(&column) && (1..rows - 1).contains(&row) {
+            place[0] += share * cell.x * ops::sin(12.9 * k as f32);
+            place[down] += share * cell.y * ops::sin(78.2 * k as f32);
+        }
+    }
+    mesh
+}
+
 /// The mesh that is drawn for an entity.
 pub fn drawn(app: &App, entity: Entity) -> &Mesh {
     app.world().resource::<Assets<Mesh>>().get(&get::<Mesh3d>(app, entity).0).expect("the mesh exists")

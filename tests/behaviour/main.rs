@@ -25,6 +25,7 @@ mod draws_between_steps;
 mod events;
 mod fabric_assets;
 mod far_away;
+mod floating_origin;
 mod forces;
 mod grabs;
 mod gravity;
@@ -46,5 +47,9 @@ mod removal;
 mod schedules;
 #[cfg(feature = "mesh_colliders")]
 mod skinned_colliders;
+mod scaled;
+mod several_targets;
+mod sides;
 mod stretch;
+mod teleports;
 mod winds;

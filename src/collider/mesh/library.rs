@@ -13,10 +13,10 @@ use super::{
     scale,
 };
 use crate::{
-    anchor::Poses,
     collider::{ColliderShape, error::ColliderError},
     draw::mesh::ClothMesh,
     error::ClothError,
+    pose::Poses,
 };
 
 /// Where triangles, skeletons and poses come from.

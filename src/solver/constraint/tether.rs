@@ -101,6 +101,21 @@ impl Tethers {
         }
     }
 
+    /// Gives the lengths of `built`, of which these are a copy, times the ratio at a slot of the cloth, or of one of its
+    /// levels, for the particle that holds it.
+    pub(crate) fn stretch(&mut self, built: &Self, ratio: impl Fn(Option<usize>, usize, u32) -> f32) {
+        let Self { pins, blocks, levels, .. } = self;
+        let of_levels = (0..).map(Some).zip(levels.iter_mut().zip(&built.levels));
+        for (level, (blocks, built)) in core::iter::once((None, (blocks, &built.blocks))).chain(of_levels) {
+            for (block, built) in blocks.iter_mut().zip(built) {
+                for lane in 0..LANES {
+                    let slot = block.block as usize * LANES + lane;
+                    block.lengths[lane] = built.lengths[lane] * ratio(level, slot, pins[block.pins[lane] as usize]);
+                }
+            }
+        }
+    }
+
     /// Every tether.
     pub fn iter(&self) -> impl Iterator<Item = Tether> {
         let particles: Vec<[Option<u32>; LANES]> = self.order.particles().collect();

@@ -86,7 +86,7 @@ pub struct WindSource {
     pub gusts: Gusts,
     /// Where it blows.
     pub region: WindRegion,
-    /// The cloth's origin in the world, m: noise belongs to the world, not to the cloth.
+    /// The cloth's origin in the noise, m, which belongs to the world and not to the cloth.
     pub origin: Vec3A,
     /// How far its air has come since it began to blow, m: what carries the eddies.
     pub travelled: DVec3,
