@@ -46,5 +46,6 @@ mod removal;
 mod schedules;
 #[cfg(feature = "mesh_colliders")]
 mod skinned_colliders;
+mod skins;
 mod stretch;
 mod winds;
