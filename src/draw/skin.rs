@@ -88,8 +88,7 @@ pub(crate) fn fit_skins(mut commands: Commands, mut wearers: Query<Wearer, HasSk
         let (mut new, is_new) = (TakenOff::default(), wearer.taken.is_none());
         let taken = wearer.taken.as_deref_mut().unwrap_or(&mut new);
         fit(&mut entity, wearer.skin, &mut taken.skin, has_joints(mesh));
-        // What only the renderer has is the user's, and it should know.
-        fit(&mut entity, wearer.weights, &mut taken.weights, mesh.try_has_morph_targets().unwrap_or(true));
+        fit(&mut entity, wearer.weights, &mut taken.weights, has_morph_targets(mesh));
         match (is_new, taken.skin.is_none() && taken.weights.is_none()) {
             (true, false) => drop(entity.try_insert(new)),
             (false, true) => drop(entity.try_remove::<TakenOff>()),
@@ -98,10 +97,16 @@ pub(crate) fn fit_skins(mut commands: Commands, mut wearers: Query<Wearer, HasSk
     }
 }
 
-/// Whether Bevy draws a mesh by a skin.
+/// Whether Bevy draws a mesh by a skin. One that only the renderer still has isn't a cloth's own: whatever was beside it
+/// fitted.
 fn has_joints(mesh: &Mesh) -> bool {
     let attributes = [Mesh::ATTRIBUTE_JOINT_INDEX, Mesh::ATTRIBUTE_JOINT_WEIGHT];
     attributes.into_iter().all(|attribute| mesh.try_contains_attribute(attribute).unwrap_or(true))
+}
+
+/// Whether Bevy draws a mesh by morph weights; likewise.
+fn has_morph_targets(mesh: &Mesh) -> bool {
+    mesh.try_has_morph_targets().unwrap_or(true)
 }
 
 /// Takes off what doesn't fit, and puts back what does. What was inserted last counts.

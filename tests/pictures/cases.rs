@@ -13,11 +13,10 @@ use bevy::{
 };
 use bevy_drape::prelude::*;
 
-/// Side of the cell that each cloth has for itself, in m.
-pub const CELL: f32 = 1.0;
+use crate::cells::CELL;
 
-const GRID: ClothGrid = ClothGrid { size: Vec2::splat(0.75), particles: UVec2::splat(9), lying: false };
-const VERTICES: usize = 81;
+const GRID: ClothGrid = ClothGrid { size: Vec2::splat(0.75), particles: UVec2::splat(21), lying: false };
+const VERTICES: usize = 441;
 
 const WEIGHT_OF_WEFT: MeshVertexAttribute = MeshVertexAttribute::new("Weft_Weight", 988_540_917, VertexFormat::Float32);
 
