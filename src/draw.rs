@@ -4,3 +4,4 @@ pub(crate) mod binding;
 pub(crate) mod carrier;
 pub(crate) mod mesh;
 pub(crate) mod shading;
+pub(crate) mod skin;

@@ -155,6 +155,9 @@ impl Plugin for ClothPlugin {
                     .chain()
                     .in_set(ClothSystems::Draw),
             )
+            .add_systems(PostUpdate, draw::skin::fit_skins.in_set(ClothSystems::Draw))
+            // Once more for meshes that are swapped after that: one that is drawn with the wrong skin ends the app.
+            .add_systems(Last, draw::skin::fit_skins.run_if(has_what_it_needs))
             .add_observer(build::system::on_cloth_removed)
             .add_observer(collider::on_collider_removed)
             .add_observer(settings::on_springs_removed);

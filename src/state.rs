@@ -110,6 +110,10 @@ pub(crate) struct Said {
     pub refused: bool,
     /// The mesh is too coarse for its fabric: by how many times its edges were too long when that was told, or 0.
     pub coarseness: f32,
+    /// The mesh has a skin.
+    pub skin: bool,
+    /// The mesh has morph targets.
+    pub morph_targets: bool,
 }
 
 /// What a cloth has given to a body.

@@ -19,6 +19,7 @@ use crate::{
     draw::{
         binding::Binding,
         mesh::{ClothMesh, Drawn},
+        skin::{Lost, copy_without_skin},
     },
     error::ClothError,
     fabric::{ClothSprings, Fabric, fineness},
@@ -27,7 +28,7 @@ use crate::{
     pose::{Poses, is_invertible},
     rest_scale::RestScale,
     solver::{Material, Particles, Tethers},
-    state::{ClothState, Requests},
+    state::{ClothState, Requests, Said},
     teleport::Jump,
 };
 
@@ -151,7 +152,8 @@ impl CandidateItem<'_, '_> {
         if let Some((ties, tethers)) = tied {
             tie(&mut state, &targets, &ties, tethers);
         }
-        Ok(Some(Built { state, binding: plan.binding, mesh: self.copy_of(mesh), positions: plan.positions }))
+        let mesh = self.copy_of(mesh, &mut state.said);
+        Ok(Some(Built { state, binding: plan.binding, mesh, positions: plan.positions }))
     }
 
     /// What the cloth waits for, with `to_world` as its rotation and scale by now.
@@ -221,12 +223,14 @@ impl CandidateItem<'_, '_> {
         state
     }
 
-    /// The mesh that is drawn. Its particles are in their place already: no skin may deform it once more.
-    fn copy_of(&self, mesh: &Mesh) -> Mesh {
-        let mut copy = mesh.clone();
-        let skin = [Mesh::ATTRIBUTE_JOINT_INDEX, Mesh::ATTRIBUTE_JOINT_WEIGHT];
-        if skin.map(|attribute| copy.try_remove_attribute(attribute).is_ok()).contains(&true) {
-            warn!("cloth {} is simulated from its bind pose: its skin isn't followed yet", self.entity);
+    /// The mesh that is drawn. Says once what of the user's it doesn't follow.
+    fn copy_of(&self, mesh: &Mesh, said: &mut Said) -> Mesh {
+        let (copy, Lost { skin, morph_targets }) = copy_without_skin(mesh);
+        if skin && !core::mem::replace(&mut said.skin, true) {
+            warn!("cloth {} is simulated and drawn from its bind pose: its skin isn't followed yet", self.entity);
+        }
+        if morph_targets && !core::mem::replace(&mut said.morph_targets, true) {
+            warn!("cloth {} is simulated and drawn without its morph targets: they aren't followed yet", self.entity);
         }
         copy
     }

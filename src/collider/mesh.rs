@@ -11,6 +11,7 @@ use bevy::{
 use super::{ClothCollider, ColliderMemory, ColliderShape, error::ColliderError};
 use crate::{
     cloth::Cloth,
+    draw::skin::TakenOff,
     error::ClothError,
     solver::{MeshShape, Shape},
     teleport::{JumpDetection, PastPose},
@@ -40,6 +41,7 @@ pub(crate) struct MeshCollider {
     memory: &'static mut ColliderMemory,
     mesh: Option<&'static Mesh3d>,
     skeleton: Option<&'static SkinnedMesh>,
+    taken: Option<&'static TakenOff>,
     is_cloth: Has<Cloth>,
 }
 
@@ -109,7 +111,8 @@ impl MeshColliderItem<'_, '_> {
         let source = self.source(library)?;
         let Some(contents) = library.contents(source, &self.collider.shape)? else { return Ok(None) };
         let is_skinned = matches!(contents, Contents::Mesh(mesh) if skin::is_skinned(mesh));
-        let skeleton = self.skeleton.filter(|_| is_skinned);
+        // Cloth is drawn without its skin, and what collides beside it still follows it.
+        let skeleton = self.skeleton.or(self.taken.and_then(|taken| taken.skin.as_ref())).filter(|_| is_skinned);
         let (end, scale) = match skeleton {
             Some(skeleton) => match library.find_joints(skeleton, joints)? {
                 Some(found) => found,

@@ -50,6 +50,7 @@ mod skinned_colliders;
 mod scaled;
 mod several_targets;
 mod sides;
+mod skins;
 mod stretch;
 mod teleports;
 mod winds;

@@ -155,6 +155,21 @@ fn a_hull_and_another_mesh_follow_the_same_skeleton() {
 }
 
 #[test]
+fn a_body_that_collides_beside_its_own_clothes_follows_the_skeleton_that_they_are_drawn_without() {
+    let mut app = headless();
+    let body = add_mesh(&mut app, limb_mesh());
+    let limb = spawn_limb(&mut app, Transform::default(), ClothCollider::mesh_of(body));
+    run(&mut app, 1);
+    app.world_mut().entity_mut(limb.entity).insert((Cloth::default(), Pins::predicate(|_| true)));
+    for i in 1..5 {
+        get_mut::<Transform>(&mut app, limb.joints[1]).translation.x = 0.01 * i as f32;
+        run(&mut app, 1);
+        assert_places(&places(&app, limb.entity)[1], &drawn_places(&app, &limb), 1e-6);
+    }
+    assert!(!app.world().entity(limb.entity).contains::<SkinnedMesh>());
+}
+
+#[test]
 fn a_mirrored_skeleton_faces_out_still() {
     let mut app = headless();
     for scale in [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::splat(-0.5)] {

@@ -6,7 +6,9 @@ use std::{
     process::Command,
 };
 
-use image::{Rgb, RgbImage};
+use image::RgbImage;
+
+use crate::colours::{Colour, share};
 
 const SIZE: (u32, u32) = (640, 360);
 
@@ -15,20 +17,17 @@ struct Expectation {
     name: &'static str,
     /// Left, top, right and bottom as fractions of the picture.
     region: [f32; 4],
-    /// From and to, in degrees; it may wrap around 360.
-    hue: [f32; 2],
-    /// From and to, of 1.
-    saturation: [f32; 2],
+    colour: Colour,
     /// Fraction of the region's pixels that must have the colour.
     share: f32,
 }
 
 #[rustfmt::skip]
 const EXPECTATIONS: [Expectation; 4] = [
-    Expectation { name: "curtain", region: [0.25, 0.30, 0.40, 0.60], hue: [345.0, 15.0], saturation: [0.5, 1.0], share: 0.60 },
-    Expectation { name: "cloth on the ball", region: [0.26, 0.66, 0.40, 0.80], hue: [195.0, 225.0], saturation: [0.4, 1.0], share: 0.40 },
-    Expectation { name: "tablecloth", region: [0.53, 0.66, 0.65, 0.80], hue: [35.0, 50.0], saturation: [0.4, 1.0], share: 0.40 },
-    Expectation { name: "flag", region: [0.65, 0.20, 0.83, 0.30], hue: [180.0, 205.0], saturation: [0.4, 1.0], share: 0.35 },
+    Expectation { name: "curtain", region: [0.25, 0.30, 0.40, 0.60], colour: Colour { hue: [345.0, 15.0], saturation: [0.5, 1.0] }, share: 0.60 },
+    Expectation { name: "cloth on the ball", region: [0.26, 0.66, 0.40, 0.80], colour: Colour { hue: [195.0, 225.0], saturation: [0.4, 1.0] }, share: 0.40 },
+    Expectation { name: "tablecloth", region: [0.53, 0.66, 0.65, 0.80], colour: Colour { hue: [35.0, 50.0], saturation: [0.4, 1.0] }, share: 0.40 },
+    Expectation { name: "flag", region: [0.65, 0.20, 0.83, 0.30], colour: Colour { hue: [180.0, 205.0], saturation: [0.4, 1.0] }, share: 0.35 },
 ];
 
 #[test]
@@ -41,7 +40,7 @@ fn the_playground_shows_its_cloths() {
         colour_variance(&picture)
     );
     for expectation in &EXPECTATIONS {
-        let share = share_of_colour(&picture, expectation);
+        let share = share(&picture, expectation.region, expectation.colour);
         assert!(
             share >= expectation.share,
             "{}: {:.1} % of its region have its colour, expected at least {:.1} %; see {}",
@@ -101,43 +100,4 @@ fn colour_variance(picture: &RgbImage) -> f32 {
         values().map(|value| (value - mean).powi(2)).sum::<f32>() / count
     };
     (0..3).map(variance_of).sum::<f32>() / 3.0
-}
-
-fn share_of_colour(picture: &RgbImage, expectation: &Expectation) -> f32 {
-    let [left, top, right, bottom] = expectation.region;
-    let (width, height) = (picture.width() as f32, picture.height() as f32);
-    let columns = (left * width) as u32..(right * width) as u32;
-    let rows = (top * height) as u32..(bottom * height) as u32;
-    let total = columns.len() * rows.len();
-    let matching = rows
-        .flat_map(|row| columns.clone().map(move |column| (column, row)))
-        .filter(|&(column, row)| has_colour(picture.get_pixel(column, row), expectation))
-        .count();
-    matching as f32 / total.max(1) as f32
-}
-
-fn has_colour(pixel: &Rgb<u8>, expectation: &Expectation) -> bool {
-    let (hue, saturation) = hue_and_saturation(pixel.0.map(f32::from));
-    let [hue_from, hue_to] = expectation.hue;
-    let hue_fits =
-        if hue_from <= hue_to { (hue_from..=hue_to).contains(&hue) } else { hue >= hue_from || hue <= hue_to };
-    let [saturation_from, saturation_to] = expectation.saturation;
-    hue_fits && (saturation_from..=saturation_to).contains(&saturation)
-}
-
-/// Hue in degrees and saturation from 0 to 1, as in the HSV colour model.
-fn hue_and_saturation([red, green, blue]: [f32; 3]) -> (f32, f32) {
-    let largest = red.max(green).max(blue);
-    let range = largest - red.min(green).min(blue);
-    if range == 0.0 {
-        return (0.0, 0.0);
-    }
-    let sixths = if largest == red {
-        (green - blue) / range
-    } else if largest == green {
-        (blue - red) / range + 2.0
-    } else {
-        (red - green) / range + 4.0
-    };
-    ((60.0 * sixths).rem_euclid(360.0), range / largest)
 }
