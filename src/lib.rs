@@ -100,7 +100,7 @@ pub mod prelude {
         grid::ClothGrid,
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
-        solver::{LevelPass, SelfCollision, Solid, TaperedCapsule},
+        solver::{Ellipsoid, LevelPass, SelfCollision, Solid, TaperedCapsule},
         state::ClothState,
         wind::{Wind, WindShape},
     };
