@@ -48,6 +48,7 @@ mod pins;
 mod anchor;
 mod collider;
 mod grab;
+mod margin;
 mod origin;
 mod parallel;
 mod settings;

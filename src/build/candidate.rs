@@ -22,7 +22,7 @@ use crate::{
     },
     error::ClothError,
     fabric::{ClothSprings, Fabric, fineness},
-    origin,
+    margin, origin,
     pins::{PinTarget, Pins, targets_by_particle},
     solver::{Material, Particles, Tethers},
     state::ClothState,
@@ -201,6 +201,7 @@ impl CandidateItem<'_, '_> {
             origin: pose.translation.into(),
             particle_of_vertex: plan.binding.particle_of_vertex.clone(),
             effort: self.cloth.effort(&plan.topology),
+            size: margin::size(&plan.topology.rest, to_world),
             topology: plan.topology.clone(),
             settings: Cloth::clone(&self.cloth),
             material: Some(material),
@@ -253,6 +254,7 @@ impl CandidateItem<'_, '_> {
         *self.state = ClothState { grabs, ..built.state };
         *self.status = ClothStatus::Ready;
         fineness::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &mut self.state);
+        margin::warn_if_too_large(entity, &mut self.state);
         if self.mesh.0 != drawn {
             self.mesh.0 = drawn.clone();
         }

@@ -43,8 +43,10 @@ mod presets;
 mod recovery;
 mod reflection;
 mod removal;
+mod scaled_obstacles;
 mod schedules;
 #[cfg(feature = "mesh_colliders")]
 mod skinned_colliders;
+mod small_cloth;
 mod stretch;
 mod winds;
