@@ -7,28 +7,29 @@ use bevy::{
 
 use crate::state::ClothState;
 
-/// The largest that a margin may be of the cloth's size. What holds a cloth may be as near to an obstacle as one likes, and what
-/// hangs from it is pushed off by the margin: one as large as the cloth would stretch it to twice its length.
+/// The largest that a margin may be of the cloth's width. What holds a cloth may be as near to an obstacle as one likes, and what
+/// hangs from it is pushed off by the margin: one as large as the cloth would stretch it to several times its length.
 const LARGEST: f32 = 0.25;
 
 impl ClothState {
     /// Distance in m that the cloth keeps from obstacles beyond its fabric's thickness: its
-    /// [`Cloth::collision_margin`](crate::prelude::Cloth::collision_margin), or a quarter of its length, if that is less.
+    /// [`Cloth::collision_margin`](crate::prelude::Cloth::collision_margin), or a quarter of its width, if that is less.
     pub fn collision_margin(&self) -> f32 {
-        self.settings.collision_margin.min(LARGEST * self.size)
+        self.settings.collision_margin.min(LARGEST * self.width)
     }
 }
 
-/// How long a cloth is at rest along its entity's axes, whose directions in the world are the columns of `to_world`: that of the
-/// longest counts, m. A ribbon is pushed off as a whole where it is narrow, and bends where it is long.
-pub(crate) fn size(rest: &[Vec3], to_world: Mat3A) -> f32 {
+/// How wide a cloth is at rest, m: the second of its lengths along its entity's axes, whose directions in the world are the columns
+/// of `to_world`. Not the longest, since a ribbon may hang along all of that, and no more of it than its width gives way then.
+pub(crate) fn width(rest: &[Vec3], to_world: Mat3A) -> f32 {
     let axes = [to_world.x_axis, to_world.y_axis, to_world.z_axis];
     let along = |axis: Vec3A| {
         let places = rest.iter().map(|&place| axis.dot(place.into()));
         places.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), place| (low.min(place), high.max(place)))
     };
-    let lengths = axes.map(|axis| along(axis.normalize_or_zero())).map(|(low, high)| high - low);
-    lengths.into_iter().fold(0.0, f32::max)
+    let mut lengths = axes.map(|axis| along(axis.normalize_or_zero())).map(|(low, high)| high - low);
+    lengths.sort_unstable_by(f32::total_cmp);
+    lengths[1]
 }
 
 /// Says so where a cloth is too small for the margin that it is given, once until it isn't.
@@ -37,9 +38,9 @@ pub(crate) fn warn_if_too_large(entity: Entity, state: &mut ClothState) {
     let is_less = kept < given;
     if is_less && !state.said.margin {
         warn!(
-            "cloth {entity} is {:.2} mm long, too small for a margin of {:.2} mm, and keeps {:.2} mm from obstacles, a quarter \
-             of its length: set Cloth::collision_margin to that or less",
-            state.size * 1e3,
+            "cloth {entity} is {:.2} mm wide, too small for a margin of {:.2} mm, and keeps {:.2} mm from obstacles, a quarter \
+             of its width: set Cloth::collision_margin to that or less",
+            state.width * 1e3,
             given * 1e3,
             kept * 1e3
         );
@@ -52,14 +53,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_turned_cloth_is_as_long_as_it_was() {
+    fn a_turned_cloth_is_as_wide_as_it_was() {
         let rest = [Vec3::ZERO, Vec3::new(0.3, 0.0, 0.1), Vec3::new(0.0, 0.2, 0.0)];
         for turn in [Quat::IDENTITY, Quat::from_euler(EulerRot::XYZ, 0.4, -0.9, 1.3)] {
             for scale in [Vec3::ONE, Vec3::splat(-2.0), Vec3::new(1.0, 3.0, 0.5)] {
                 let to_world = Mat3A::from_quat(turn) * Mat3A::from_diagonal(scale);
-                let size = size(&rest.map(|place| Vec3::from(to_world * Vec3A::from(place))), to_world);
-                let expected = (scale.abs() * Vec3::new(0.3, 0.2, 0.1)).max_element();
-                assert!((size - expected).abs() < 1e-6, "{size} m for {expected}");
+                let width = width(&rest.map(|place| Vec3::from(to_world * Vec3A::from(place))), to_world);
+                let mut lengths = (scale.abs() * Vec3::new(0.3, 0.2, 0.1)).to_array();
+                lengths.sort_unstable_by(f32::total_cmp);
+                assert!((width - lengths[1]).abs() < 1e-6, "{width} m for {lengths:?}");
             }
         }
     }

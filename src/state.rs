@@ -46,8 +46,8 @@ pub struct ClothState {
     pub(crate) effort: Effort,
     /// The constants in force: the latest that were valid.
     pub(crate) material: Option<Material>,
-    /// How long it is at rest, m.
-    pub(crate) size: f32,
+    /// How wide it is at rest, m.
+    pub(crate) width: f32,
     /// Fixed particles and what they follow.
     pub(crate) pins: Vec<HeldPin>,
     /// Particles that are fixed to bodies which give way, by what is known: they hold no tethers.

@@ -201,7 +201,7 @@ impl CandidateItem<'_, '_> {
             origin: pose.translation.into(),
             particle_of_vertex: plan.binding.particle_of_vertex.clone(),
             effort: self.cloth.effort(&plan.topology),
-            size: margin::size(&plan.topology.rest, to_world),
+            width: margin::width(&plan.topology.rest, to_world),
             topology: plan.topology.clone(),
             settings: Cloth::clone(&self.cloth),
             material: Some(material),
