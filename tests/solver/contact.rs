@@ -153,6 +153,23 @@ fn an_obstacle_at_thirty_metres_a_second_pushes_and_is_not_passed() {
     }
 }
 
+#[test]
+fn an_ellipsoid_that_is_thinner_than_a_cell_lifts_a_cloth_and_does_not_come_through() {
+    // A needle, and a disc on its edge, that rise in the middle of cells of 14 cm.
+    for half_size in [Vec3::new(0.02, 0.3, 0.02), Vec3::new(0.02, 0.3, 0.3)] {
+        let shape = Solid::Ellipsoid(Ellipsoid { half_size });
+        let mut bed = Bed { gravity: Vec3A::ZERO, ..sheet(Method::Strands, 8, cotton(0.3, 0.005)) };
+        let pose = |frame: i32| Isometry3d::from_translation(Vec3::Y * (frame as f32 / 60.0 - half_size.y - 0.01));
+        for frame in 0..18 {
+            bed.obstacles = vec![Obstacle::moving(shape, pose(frame), pose(frame + 1))];
+            bed.step(1.0 / 60.0);
+        }
+        let risen = bed.centre().y;
+        println!("{half_size}: {risen} m");
+        assert!(risen > 0.2, "{half_size}: {risen} m, and its tip by 0.29 m");
+    }
+}
+
 /// How far a shape reaches down from its centre, m.
 fn shape_reach(shape: Solid) -> f32 {
     -shape.surface(Vec3A::NEG_Y * 10.0).distance + 10.0
