@@ -80,7 +80,8 @@ pub struct Cloth {
     /// Density of the air around in kg/m³. 1.225 at sea level, 0 for a vacuum.
     pub fluid_density: f32,
     /// Distance in m that the cloth keeps from obstacles beyond its fabric's thickness, 0 or more. 0.002 to 0.02: the more the
-    /// larger its triangles are, so that no corner of an obstacle shows between its particles.
+    /// larger its triangles are, so that no corner of an obstacle shows between its particles. More than a quarter of the
+    /// cloth's width counts as that, with one warning.
     pub collision_margin: f32,
     /// The most in m/s that cloth which finds itself inside of an obstacle, or too near to other cloth, leaves it by,
     /// greater than 0. 0.5 to 3: more gets out sooner, and looks like a blow.

@@ -12,8 +12,10 @@ use crate::{
     teleport::{Jump, JumpDetection, PastPose},
 };
 use error::ColliderError;
+use likeness::Likeness;
 
 pub(crate) mod error;
+mod likeness;
 #[cfg(feature = "mesh_colliders")]
 pub(crate) mod mesh;
 mod solid;
@@ -26,9 +28,14 @@ mod solid;
 /// [`ColliderTeleportThreshold`](crate::prelude::ColliderTeleportThreshold), by itself. While it is `Disabled` it is no
 /// obstacle, and comes out of nowhere afterwards.
 ///
-/// Made from one of Bevy's primitives: `ClothCollider::from(Sphere::new(0.3))`; also from a `Cuboid`, a `Capsule3d`, a
+/// Made from one of Bevy's primitives: `ClothCollider::from(Sphere::new(0.3))`; also from an
+/// [`Ellipsoid`](crate::prelude::Ellipsoid), a `Cuboid`, a `Capsule3d`, a
 /// [`TaperedCapsule`](crate::prelude::TaperedCapsule), a `Cylinder`, a `Cone` and, for a ground, an `InfinitePlane3d`,
-/// behind which all is solid. The transform's scale applies; where it isn't uniform, round shapes take its largest factor.
+/// behind which all is solid.
+///
+/// The transform's scale applies, and a ball becomes an [`Ellipsoid`](crate::prelude::Ellipsoid) where it isn't uniform.
+/// What is round about an axis stays so: it takes the larger of the factors across that, and its round ends stay balls. One
+/// warning tells of it, and of a transform that is sheared, by which only a plane and triangles are.
 #[cfg_attr(
     feature = "mesh_colliders",
     doc = "
@@ -137,6 +144,8 @@ pub(crate) struct ColliderMemory {
     told_of_jump: bool,
     /// Why the collider was left out, of which a warning has told.
     said: Option<ColliderError>,
+    /// Whether it is what is seen.
+    likeness: Likeness,
     /// What it is made of, where it is no primitive.
     #[cfg(feature = "mesh_colliders")]
     triangles: mesh::Triangles,
@@ -212,6 +221,7 @@ pub(crate) fn gather_obstacles(
             Ok(Some((shape, end))) => {
                 let start = memory.come_to(entity, end, &jumps);
                 memory.said = None;
+                memory.likeness.tell(entity);
                 let friction = collider.friction;
                 let obstacle = Obstacle { shape, start, end, rounding: 0.0, friction, body: None };
                 obstacles.list.push((entity, collider.layers, obstacle));
@@ -255,13 +265,15 @@ impl ColliderMemory {
 
     /// Shape and world pose of the collider at the end of the coming step. None while its shape is waited for.
     fn placed(
-        &self,
+        &mut self,
         collider: &ClothCollider,
         pose: impl Fn() -> Option<Affine3A>,
     ) -> Result<Option<(Shape, Isometry3d)>, ColliderError> {
         let placed = match &collider.shape {
             ColliderShape::Solid(solid) => {
-                let (solid, pose) = solid::placed(*solid, pose().ok_or(ColliderError::NoSize)?)?;
+                let pose = pose().ok_or(ColliderError::NoSize)?;
+                self.likeness.look(solid, &pose);
+                let (solid, pose) = solid::placed(*solid, pose)?;
                 Some((Shape::Solid(solid), pose))
             }
             #[cfg(feature = "mesh_colliders")]

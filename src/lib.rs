@@ -49,6 +49,7 @@ mod anchor;
 mod clock;
 mod collider;
 mod grab;
+mod margin;
 mod origin;
 mod parallel;
 mod pose;
@@ -106,7 +107,7 @@ pub mod prelude {
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
         shift::WorldShiftCommands,
-        solver::{LevelPass, SelfCollision, Solid, TaperedCapsule},
+        solver::{Ellipsoid, LevelPass, SelfCollision, Solid, TaperedCapsule},
         state::ClothState,
         teleport::ColliderTeleportThreshold,
         wind::{Wind, WindShape},

@@ -6,6 +6,7 @@ use crate::{
     anchor,
     cloth::{Cloth, ClothStatus},
     fabric::{ClothSprings, Fabric, fineness},
+    margin,
     state::ClothState,
 };
 
@@ -24,6 +25,7 @@ pub(crate) fn update_settings(
         let settings = cloth.validate().map(|()| {
             state.effort = cloth.effort(&state.topology);
             state.settings = cloth.clone();
+            margin::warn_if_too_large(entity, &mut state);
         });
         let material = fabric.material_with(springs).map(|material| {
             state.material = Some(material);

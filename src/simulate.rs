@@ -145,6 +145,7 @@ impl<'a> Parts<'a> {
     ) -> Option<Self> {
         let material = state.material?;
         state.step_start.clone_from(&state.particles.position);
+        let margin = state.collision_margin();
         let ClothState { particles, topology, origin, settings, effort, work, tethers, .. } = state;
         let Work { anchors, mounts, mounted, grabs, obstacles: near, owners, winds: felt, jump, .. } = work;
         surroundings.obstacles.around(*origin, settings.collision_mask, *jump, near, owners);
@@ -163,7 +164,7 @@ impl<'a> Parts<'a> {
             max_velocity: settings.max_velocity,
             tethers: settings.tether_slack.map(|_| &*tethers),
             tether_slack: settings.tether_slack.unwrap_or_default(),
-            margin: settings.collision_margin,
+            margin,
             max_depenetration_velocity: settings.max_depenetration_velocity,
             self_collision: settings.self_collision,
             collision_layers: settings.collision_layers,

@@ -38,7 +38,7 @@ pub use constraint::{
 pub use contact::{
     Body, Obstacle, Push, Shape, Stray,
     mesh::{MeshShape, TriangleMesh},
-    solid::{Solid, TaperedCapsule},
+    solid::{Ellipsoid, Solid, TaperedCapsule},
 };
 pub use context::{Anchor, Method, SelfCollision, StepContext, StepReport};
 pub use effort::Effort;

@@ -48,6 +48,8 @@ pub struct ClothState {
     pub(crate) effort: Effort,
     /// The constants in force: the latest that were valid.
     pub(crate) material: Option<Material>,
+    /// How wide it is at rest, m.
+    pub(crate) width: f32,
     /// Fixed particles and what they follow.
     pub(crate) pins: Vec<HeldPin>,
     /// Particles that are fixed to bodies which give way, by what is known: they hold no tethers.
@@ -108,6 +110,8 @@ pub(crate) struct Said {
     pub not_finite: bool,
     /// A setting is out of its range.
     pub refused: bool,
+    /// The margin is too large for the cloth.
+    pub margin: bool,
     /// The mesh is too coarse for its fabric: by how many times its edges were too long when that was told, or 0.
     pub coarseness: f32,
     /// The mesh has a skin.

@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::{
     pose::Poses,
-    solver::{WindRegion, WindSource, force::wind::Gusts},
+    solver::{Ellipsoid, WindRegion, WindSource, force::wind::Gusts},
 };
 
 /// A wind. It presses on triangles by their area and their side to it, so it fills sails and lets flags flutter.
@@ -67,7 +67,7 @@ pub enum WindShape {
     /// Everywhere.
     #[default]
     Everywhere,
-    /// In a ball.
+    /// In a ball, or in the ellipsoid that it is under a scale that isn't uniform.
     Sphere(Sphere),
     /// In a box.
     Cuboid(Cuboid),
@@ -81,9 +81,14 @@ impl Wind {
         let (region, size) = match self.region {
             WindShape::Everywhere => (WindRegion::Everywhere, 0.0),
             WindShape::Sphere(Sphere { radius }) => {
-                let radius = radius * scale.abs().max_element();
-                let centre = pose.translation;
-                (WindRegion::Sphere { centre, radius, edge: self.edge }, radius)
+                let shape = Ellipsoid { half_size: radius * scale.abs() };
+                let region = if shape.is_ball() {
+                    let (centre, radius) = (pose.translation, shape.half_size.max_element());
+                    WindRegion::Sphere { centre, radius, edge: self.edge }
+                } else {
+                    WindRegion::Ellipsoid { pose, shape, edge: self.edge }
+                };
+                (region, shape.half_size.element_sum())
             }
             WindShape::Cuboid(Cuboid { half_size }) => {
                 let half_size = Vec3A::from(half_size * scale.abs());

@@ -5,7 +5,7 @@ use bevy::{
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
 };
-use bevy_drape::solver::Solid;
+use bevy_drape::solver::{Ellipsoid, Solid};
 
 use super::{Stage, common, scene};
 
@@ -65,6 +65,7 @@ fn shape_of(solid: &Solid) -> Option<Mesh> {
         // Not what is thin: it would be gone.
         Solid::Sphere(Sphere { radius }) if radius > 0.1 => Sphere::new(radius - BEHIND).mesh().uv(128, 72),
         Solid::Sphere(sphere) => sphere.mesh().uv(64, 36),
+        Solid::Ellipsoid(Ellipsoid { half_size }) => Sphere::new(1.0).mesh().uv(64, 36).scaled_by(half_size),
         Solid::Cuboid(cuboid) => cuboid.into(),
         Solid::Capsule(capsule) => capsule.into(),
         Solid::Cylinder(cylinder) => cylinder.into(),

@@ -23,7 +23,7 @@ use crate::{
     },
     error::ClothError,
     fabric::{ClothSprings, Fabric, fineness},
-    origin,
+    margin, origin,
     pins::{PinTarget, Pins, targets_by_particle},
     pose::{Poses, is_invertible},
     rest_scale::RestScale,
@@ -206,6 +206,7 @@ impl CandidateItem<'_, '_> {
             origin: pose.translation.into(),
             particle_of_vertex: plan.binding.particle_of_vertex.clone(),
             effort: self.cloth.effort(&plan.topology),
+            width: margin::width(&plan.topology.rest, to_world),
             topology: plan.topology.clone(),
             settings: Cloth::clone(&self.cloth),
             material: Some(material),
@@ -263,6 +264,7 @@ impl CandidateItem<'_, '_> {
         *self.state = ClothState { grabs, requests, ..built.state };
         *self.status = ClothStatus::Ready;
         fineness::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &mut self.state);
+        margin::warn_if_too_large(entity, &mut self.state);
         if self.mesh.0 != drawn {
             self.mesh.0 = drawn.clone();
         }

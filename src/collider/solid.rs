@@ -6,7 +6,7 @@ use bevy::{
 };
 
 use super::{ClothCollider, ColliderShape, error::ColliderError};
-use crate::solver::{Solid, TaperedCapsule};
+use crate::solver::{Ellipsoid, Solid, TaperedCapsule};
 
 impl From<Solid> for ClothCollider {
     fn from(solid: Solid) -> Self {
@@ -17,6 +17,12 @@ impl From<Solid> for ClothCollider {
 impl From<Sphere> for ClothCollider {
     fn from(sphere: Sphere) -> Self {
         Solid::Sphere(sphere).into()
+    }
+}
+
+impl From<Ellipsoid> for ClothCollider {
+    fn from(ellipsoid: Ellipsoid) -> Self {
+        Solid::Ellipsoid(ellipsoid).into()
     }
 }
 
@@ -75,8 +81,17 @@ fn scaled(solid: Solid, scale: Vec3) -> Option<Solid> {
     let all_positive = |sizes: &[f32]| sizes.iter().all(|&size| size.is_finite() && size > 0.0);
     let (solid, has_size) = match solid {
         Solid::Sphere(Sphere { radius }) => {
-            let radius = radius * around;
-            (Solid::Sphere(Sphere { radius }), all_positive(&[radius]))
+            let ellipsoid = Ellipsoid { half_size: radius * scale };
+            let solid = if ellipsoid.is_ball() {
+                Solid::Sphere(Sphere { radius: radius * around })
+            } else {
+                Solid::Ellipsoid(ellipsoid)
+            };
+            (solid, all_positive(&ellipsoid.half_size.to_array()))
+        }
+        Solid::Ellipsoid(Ellipsoid { half_size }) => {
+            let half_size = half_size * scale;
+            (Solid::Ellipsoid(Ellipsoid { half_size }), all_positive(&half_size.to_array()))
         }
         Solid::Cuboid(Cuboid { half_size }) => {
             let half_size = half_size * scale;

@@ -1,5 +1,7 @@
 //! What surrounds cloths: colliders and wind.
 
+use core::f32::consts::FRAC_PI_2;
+
 use bevy::{
     math::{Vec3A, bounding::Aabb3d},
     prelude::*,
@@ -8,7 +10,7 @@ use bevy::{
 use super::{ClothDebugConfig, Lines, Shown, palette, wires::Wires};
 use crate::{
     collider::Obstacles,
-    solver::{MeshShape, Obstacle, Shape, Solid, TaperedCapsule, force::wind::add_air_velocity},
+    solver::{Ellipsoid, MeshShape, Obstacle, Shape, Solid, TaperedCapsule, force::wind::add_air_velocity},
     wind::Winds,
 };
 
@@ -34,6 +36,16 @@ pub(super) fn draw_colliders(lines: &mut Lines, obstacles: &Obstacles, wires: &m
 fn draw_solid(lines: &mut Lines, solid: Solid, pose: Isometry3d) {
     match solid {
         Solid::Sphere(sphere) => drop(lines.primitive_3d(&sphere, pose, palette::COLLIDER)),
+        Solid::Ellipsoid(Ellipsoid { half_size }) => {
+            let faces = [
+                (Quat::IDENTITY, half_size.xy()),
+                (Quat::from_rotation_x(FRAC_PI_2), half_size.xz()),
+                (Quat::from_rotation_y(FRAC_PI_2), half_size.zy()),
+            ];
+            for (turn, half_size) in faces {
+                lines.ellipse(pose * Isometry3d::from_rotation(turn), half_size, palette::COLLIDER);
+            }
+        }
         Solid::Cuboid(cuboid) => lines.primitive_3d(&cuboid, pose, palette::COLLIDER),
         Solid::Capsule(capsule) => {
             lines.primitive_3d(&capsule, pose, palette::COLLIDER).resolution(12);

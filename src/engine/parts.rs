@@ -41,6 +41,7 @@ impl Part {
         let is_part = |size: f32| size.is_finite() && size >= 0.0 && size + self.rounding > 0.0;
         let has_size = match &self.shape {
             Shape::Solid(Solid::Sphere(sphere)) => is_part(sphere.radius),
+            Shape::Solid(Solid::Ellipsoid(ellipsoid)) => ellipsoid.half_size.to_array().into_iter().all(is_size),
             Shape::Solid(Solid::Cuboid(cuboid)) => cuboid.half_size.to_array().into_iter().all(is_part),
             // One of no thickness is a line, and cloth keeps its distance from lines too.
             Shape::Solid(Solid::Capsule(capsule)) => (capsule.radius + capsule.half_length).is_finite(),

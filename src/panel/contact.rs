@@ -15,7 +15,7 @@ const MARGIN: Knob = Knob::new(
     (0.0, 0.05),
     (0.0, 10.0),
     "Distance kept from obstacles beyond the fabric's thickness, in mm. 2 to 20: more where triangles are large and \
-     obstacles poke through between their corners.",
+     obstacles poke through between their corners. More than a quarter of the cloth's width counts as that.",
 )
 .shown_as("mm", 1e3);
 const LEAVING: Knob = Knob::new(

@@ -44,6 +44,7 @@ mod presets;
 mod recovery;
 mod reflection;
 mod removal;
+mod scaled_obstacles;
 mod schedules;
 #[cfg(feature = "mesh_colliders")]
 mod skinned_colliders;
@@ -51,6 +52,7 @@ mod scaled;
 mod several_targets;
 mod sides;
 mod skins;
+mod small_cloth;
 mod stretch;
 mod teleports;
 mod winds;

@@ -53,6 +53,19 @@ fn a_wind_blows_in_its_region_only() {
 }
 
 #[test]
+fn a_ball_of_wind_is_scaled_as_it_is_seen() {
+    // 3 m long along its own x, which lies along the world's y, and half a metre thick.
+    let drawn_out = Transform::from_xyz(10.0, 0.0, 0.0)
+        .with_rotation(Quat::from_rotation_z(FRAC_PI_2))
+        .with_scale(Vec3::new(3.0, -0.5, 0.5));
+    let region = WindShape::Sphere(Sphere::new(1.0));
+    let wind = Wind { velocity: Vec3::Z * 4.0, region, edge: 0.01, ..default() };
+    assert!(blown(wind.clone(), drawn_out, Vec3::new(10.0, 2.4, 0.0)).z > 0.5);
+    let calm = blown(Wind { velocity: Vec3::ZERO, ..wind.clone() }, drawn_out, Vec3::new(11.0, 0.0, 0.0));
+    assert_eq!(blown(wind, drawn_out, Vec3::new(11.0, 0.0, 0.0)), calm);
+}
+
+#[test]
 fn winds_add_up() {
     let mut app = headless();
     for velocity in [Vec3::X * 3.0, Vec3::X * -3.0] {

@@ -6,7 +6,7 @@ use bevy::{
 };
 use bevy_drape::{
     prelude::{ClothGrid, ClothSprings},
-    solver::{Material, WindRegion, WindSource, force::wind::Gusts},
+    solver::{Ellipsoid, Material, WindRegion, WindSource, force::wind::Gusts},
 };
 
 use crate::bench_bed::{Bed, GRAVITY, bits, springs_in_air};
@@ -95,6 +95,14 @@ fn a_region_has_a_soft_edge_and_ends() {
     assert!((ball.weight(Vec3A::X * 2.9) - ball.weight(Vec3A::X * -0.9)).abs() < 1e-6);
     assert_eq!(ball.weight(Vec3A::X * 2.5), 0.5);
     assert_eq!(ball.weight(Vec3A::X * 3.1), 0.0);
+    let turned = Isometry3d::new(Vec3::X, Quat::from_rotation_z(core::f32::consts::FRAC_PI_2));
+    let shape = Ellipsoid { half_size: Vec3::new(4.0, 2.0, 2.0) };
+    let egg = WindRegion::Ellipsoid { pose: turned, shape, edge: 1.0 };
+    assert_eq!(egg.weight(Vec3A::X), 1.0);
+    for place in [Vec3A::new(1.0, -3.5, 0.0), Vec3A::X * 2.5, Vec3A::new(1.0, 0.0, 1.5)] {
+        assert!((egg.weight(place) - 0.5).abs() < 1e-5, "{place}: half a metre from the surface");
+    }
+    assert_eq!(egg.weight(Vec3A::X * 3.1), 0.0);
     let quarter_turn = Quat::from_rotation_y(core::f32::consts::FRAC_PI_2);
     let pose = Isometry3d::new(Vec3::Y, quarter_turn);
     let block = WindRegion::Cuboid { pose, half_size: Vec3A::new(4.0, 1.0, 1.0), edge: 0.0 };

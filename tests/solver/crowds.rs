@@ -8,7 +8,7 @@ use bevy::{
 };
 use bevy_drape::{
     prelude::ClothSprings,
-    solver::{Material, MeshShape, Method, Obstacle, Shape, Solid, TaperedCapsule, TriangleMesh},
+    solver::{Ellipsoid, Material, MeshShape, Method, Obstacle, Shape, Solid, TaperedCapsule, TriangleMesh},
 };
 use proptest::{prelude::*, test_runner::RngSeed};
 
@@ -77,7 +77,7 @@ fn distance(obstacle: &Obstacle, place: Vec3A) -> f32 {
 }
 
 fn solid() -> impl Strategy<Value = Form> {
-    (0..7, prop::array::uniform3(0.05_f32..0.4)).prop_map(|(kind, [a, b, c])| {
+    (0..8, prop::array::uniform3(0.05_f32..0.4)).prop_map(|(kind, [a, b, c])| {
         Form::Solid(match kind {
             0 => Solid::Sphere(Sphere::new(a)),
             1 => Solid::Cuboid(Cuboid::new(a, b, c)),
@@ -85,6 +85,7 @@ fn solid() -> impl Strategy<Value = Form> {
             3 => Solid::Cylinder(Cylinder::new(a, b)),
             4 => Solid::Cone(Cone::new(a, b)),
             5 => Solid::TaperedCapsule(TaperedCapsule::new(a, b, c)),
+            6 => Solid::Ellipsoid(Ellipsoid { half_size: Vec3::new(a, b, c) }),
             _ => Solid::HalfSpace(InfinitePlane3d::default()),
         })
     })
@@ -149,6 +150,7 @@ impl Form {
     fn reach(&self) -> f32 {
         match *self {
             Self::Solid(Solid::Sphere(Sphere { radius })) | Self::Ball(radius) => radius,
+            Self::Solid(Solid::Ellipsoid(ellipsoid)) => ellipsoid.half_size.max_element(),
             Self::Solid(Solid::Cuboid(cuboid)) => cuboid.half_size.length(),
             Self::Solid(Solid::Capsule(capsule)) => capsule.half_length + capsule.radius,
             Self::Solid(Solid::Cylinder(cylinder)) => cylinder.radius.hypot(cylinder.half_height),

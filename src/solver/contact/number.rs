@@ -31,6 +31,8 @@ pub(in crate::solver) trait Number:
     fn is_below(self, other: Self) -> Self::Truth;
     /// `self` where that is so, else `other`.
     fn if_so(self, so: Self::Truth, other: Self) -> Self;
+    /// Whether it is so of any of them.
+    fn is_any(so: Self::Truth) -> bool;
 }
 
 impl Number for f32 {
@@ -70,6 +72,11 @@ impl Number for f32 {
     fn if_so(self, so: bool, other: Self) -> Self {
         if so { self } else { other }
     }
+
+    #[inline(always)]
+    fn is_any(so: bool) -> bool {
+        so
+    }
 }
 
 impl<S: Simd> Number for f32x8<S> {
@@ -108,6 +115,11 @@ impl<S: Simd> Number for f32x8<S> {
     #[inline(always)]
     fn if_so(self, so: mask32x8<S>, other: Self) -> Self {
         so.select(self, other)
+    }
+
+    #[inline(always)]
+    fn is_any(so: mask32x8<S>) -> bool {
+        so.any_true()
     }
 }
 

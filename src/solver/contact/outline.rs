@@ -11,6 +11,8 @@ use super::{
     surface::{Bounds, Places, Surface},
 };
 
+mod ellipsoid;
+
 /// Points and edges with a distance around them.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
@@ -41,6 +43,7 @@ impl Outline {
             Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, half_length }) => {
                 outline.bone([-half_length, half_length].map(|y| Vec3A::Y * y), [radius_bottom, radius_top]);
             }
+            Solid::Ellipsoid(ellipsoid) => outline.ellipsoid(&ellipsoid),
             Solid::Cuboid(Cuboid { half_size }) => outline.cuboid(half_size.into()),
             Solid::Cylinder(Cylinder { radius, half_height }) => {
                 outline.rim(radius, half_height);
@@ -92,6 +95,10 @@ impl Tightness {
             Solid::TaperedCapsule(TaperedCapsule { radius_top, radius_bottom, .. }) => {
                 self.pierced_by_ball(radius_top.min(radius_bottom))
             }
+            Solid::Ellipsoid(ellipsoid) => {
+                let [sharp, blunt] = ellipsoid.tip_radii();
+                self.is_thin(sharp).then_some(if self.fits(blunt) { Sharp::Tip } else { Sharp::Edge })
+            }
             Solid::Cylinder(Cylinder { radius, .. }) => {
                 self.pierced_by_ball(radius).or(is_caught.then_some(Sharp::Edge))
             }
@@ -102,8 +109,12 @@ impl Tightness {
     }
 
     fn pierced_by_ball(self, radius: f32) -> Option<Sharp> {
-        let fits = radius + self.distance < self.edge;
-        self.is_thin(radius).then_some(if fits { Sharp::Tip } else { Sharp::Edge })
+        self.is_thin(radius).then_some(if self.fits(radius) { Sharp::Tip } else { Sharp::Edge })
+    }
+
+    /// Whether what is as round as that fits through a cell of the cloth.
+    fn fits(self, radius: f32) -> bool {
+        radius + self.distance < self.edge
     }
 
     /// Whether a chord of the cloth sinks too deep into what is round.
@@ -175,6 +186,7 @@ impl Drawing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::contact::solid::Ellipsoid;
 
     #[test]
     fn an_outline_lies_within_its_solid() {
@@ -182,6 +194,9 @@ mod tests {
             Solid::Sphere(Sphere::new(0.01)),
             Solid::Capsule(Capsule3d::new(0.01, 0.5)),
             Solid::TaperedCapsule(TaperedCapsule::new(0.01, 0.03, 0.3)),
+            Solid::Ellipsoid(Ellipsoid { half_size: Vec3::new(0.4, 0.02, 0.2) }),
+            Solid::Ellipsoid(Ellipsoid { half_size: Vec3::new(0.01, 0.01, 0.5) }),
+            Solid::Ellipsoid(Ellipsoid { half_size: Vec3::new(0.01, 0.010_01, 0.01) }),
             Solid::Cuboid(Cuboid::new(0.2, 0.3, 0.4)),
             Solid::Cylinder(Cylinder::new(0.01, 0.4)),
             Solid::Cone(Cone::new(0.1, 0.4)),
@@ -199,5 +214,7 @@ mod tests {
     fn what_is_round_enough_has_none() {
         let tightness = Tightness { edge: 0.022, distance: 0.0, sink: 0.0005 };
         assert!(Outline::of(&Solid::Sphere(Sphere::new(0.3)), tightness).points.is_empty());
+        let half_size = Vec3::new(0.4, 0.35, 0.3);
+        assert!(Outline::of(&Solid::Ellipsoid(Ellipsoid { half_size }), tightness).points.is_empty());
     }
 }

@@ -47,6 +47,7 @@ pub(in crate::solver) fn project(scratch: &mut Scratch, ctx: &StepContext, span:
                 }
                 match solid {
                     Solid::Sphere(field) => past.go(&mut Whole(field)),
+                    Solid::Ellipsoid(field) => past.go(&mut Whole(field)),
                     Solid::Cuboid(field) => past.go(&mut Whole(field)),
                     Solid::Capsule(field) => past.go(&mut Whole(field)),
                     Solid::TaperedCapsule(field) => past.go(&mut Whole(field)),

@@ -8,8 +8,10 @@ use bevy::{
     prelude::Reflect,
 };
 
+mod ellipsoid;
 mod field;
 
+pub use ellipsoid::Ellipsoid;
 pub(super) use field::{Field, Seen};
 
 /// A solid whose signed distance has a formula.
@@ -18,6 +20,8 @@ pub(super) use field::{Field, Seen};
 pub enum Solid {
     /// A ball.
     Sphere(Sphere),
+    /// A ball that isn't as long along all axes.
+    Ellipsoid(Ellipsoid),
     /// A box.
     Cuboid(Cuboid),
     /// A capsule along Y.
@@ -72,6 +76,7 @@ impl Solid {
         let point = point.into();
         Surface::from(match self {
             Self::Sphere(sphere) => sphere.seen(point),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.seen(point),
             Self::Cuboid(cuboid) => cuboid.seen(point),
             Self::Capsule(capsule) => capsule.seen(point),
             Self::TaperedCapsule(capsule) => capsule.seen(point),
@@ -85,6 +90,7 @@ impl Solid {
     pub(super) fn reach(&self) -> f32 {
         match self {
             Self::Sphere(sphere) => sphere.radius,
+            Self::Ellipsoid(ellipsoid) => ellipsoid.half_size.max_element(),
             Self::Cuboid(cuboid) => cuboid.half_size.length(),
             Self::Capsule(capsule) => capsule.half_length + capsule.radius,
             Self::TaperedCapsule(capsule) => capsule.half_length + capsule.radius_top.max(capsule.radius_bottom),
@@ -100,9 +106,12 @@ mod tests {
     use super::*;
     use bevy::math::{Dir3, Vec3};
 
-    fn all_solids() -> [Solid; 9] {
+    fn all_solids() -> [Solid; 12] {
         [
             Solid::Sphere(Sphere::new(0.4)),
+            Solid::Ellipsoid(Ellipsoid { half_size: Vec3::new(0.8, 0.16, 0.4) }),
+            Solid::Ellipsoid(Ellipsoid { half_size: Vec3::new(0.04, 0.6, 0.04) }),
+            Solid::Ellipsoid(Ellipsoid { half_size: Vec3::splat(0.4) }),
             Solid::Cuboid(Cuboid::new(0.6, 1.0, 0.4)),
             Solid::Capsule(Capsule3d::new(0.2, 0.8)),
             Solid::TaperedCapsule(TaperedCapsule::new(0.1, 0.3, 0.7)),

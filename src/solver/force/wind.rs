@@ -12,7 +12,7 @@
 
 use bevy::math::{DVec3, Isometry3d, Vec3A};
 
-use crate::solver::{Particles, StepContext, Topology};
+use crate::solver::{Ellipsoid, Particles, Solid, StepContext, Topology};
 
 mod gusts;
 
@@ -29,6 +29,15 @@ pub enum WindRegion {
         centre: Vec3A,
         /// Radius, m.
         radius: f32,
+        /// Width of the edge inside of which the wind dies down, m.
+        edge: f32,
+    },
+    /// In an ellipsoid.
+    Ellipsoid {
+        /// Centre and axes of the ellipsoid.
+        pose: Isometry3d,
+        /// Half of its lengths along its axes.
+        shape: Ellipsoid,
         /// Width of the edge inside of which the wind dies down, m.
         edge: f32,
     },
@@ -49,6 +58,10 @@ impl WindRegion {
         match self {
             Self::Everywhere => self,
             Self::Sphere { centre, radius, edge } => Self::Sphere { centre: centre - origin, radius, edge },
+            Self::Ellipsoid { pose, shape, edge } => {
+                let pose = Isometry3d::new(pose.translation - origin, pose.rotation);
+                Self::Ellipsoid { pose, shape, edge }
+            }
             Self::Cuboid { pose, half_size, edge } => {
                 let pose = Isometry3d::new(pose.translation - origin, pose.rotation);
                 Self::Cuboid { pose, half_size, edge }
@@ -61,6 +74,10 @@ impl WindRegion {
         let (depth, edge) = match *self {
             Self::Everywhere => return 1.0,
             Self::Sphere { centre, radius, edge } => (radius - point.distance(centre), edge),
+            Self::Ellipsoid { pose, shape, edge } => {
+                let local = pose.inverse().transform_point(point);
+                (-Solid::Ellipsoid(shape).surface(local).distance, edge)
+            }
             Self::Cuboid { pose, half_size, edge } => {
                 let local = pose.inverse().transform_point(point);
                 ((half_size - local.abs()).min_element(), edge)

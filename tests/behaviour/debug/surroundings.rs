@@ -27,23 +27,26 @@ fn arrows(app: &App) -> Vec<Line> {
 #[test]
 fn lines_of_colliders_lie_on_their_surface() {
     let pose = Transform::from_xyz(3.0, -2.0, 1.0).with_rotation(Quat::from_euler(EulerRot::XYZ, 0.4, -0.9, 1.3));
-    let colliders: [(ClothCollider, Solid); 4] = [
-        (Sphere::new(0.4).into(), Solid::Sphere(Sphere::new(0.8))),
-        (Cuboid::new(0.6, 1.0, 0.4).into(), Solid::Cuboid(Cuboid::new(1.2, 2.0, 0.8))),
-        (Capsule3d::new(0.2, 0.8).into(), Solid::Capsule(Capsule3d::new(0.4, 1.6))),
-        (Cylinder::new(0.3, 0.9).into(), Solid::Cylinder(Cylinder::new(0.6, 1.8))),
+    let twice = Vec3::splat(2.0);
+    let (flat, half_size) = (Vec3::new(2.0, 0.4, 1.0), Vec3::new(0.8, 0.16, 0.4));
+    let colliders: [(ClothCollider, Vec3, Solid); 5] = [
+        (Sphere::new(0.4).into(), twice, Solid::Sphere(Sphere::new(0.8))),
+        (Sphere::new(0.4).into(), flat, Solid::Ellipsoid(Ellipsoid { half_size })),
+        (Cuboid::new(0.6, 1.0, 0.4).into(), twice, Solid::Cuboid(Cuboid::new(1.2, 2.0, 0.8))),
+        (Capsule3d::new(0.2, 0.8).into(), twice, Solid::Capsule(Capsule3d::new(0.4, 1.6))),
+        (Cylinder::new(0.3, 0.9).into(), twice, Solid::Cylinder(Cylinder::new(0.6, 1.8))),
     ];
-    for (collider, twice) in colliders {
+    for (collider, scale, solid) in colliders {
         let mut app = inside();
         config(&mut app).colliders = true;
-        app.world_mut().spawn((collider, pose.with_scale(Vec3::splat(2.0))));
+        app.world_mut().spawn((collider, pose.with_scale(scale)));
         run(&mut app, 1);
         let lines = lines(&app);
-        assert!(lines.len() >= 12, "{twice:?}: {}", lines.len());
+        assert!(lines.len() >= 12, "{solid:?}: {}", lines.len());
         for place in lines.iter().flat_map(|line| [line.from, line.to]) {
             let local = pose.to_matrix().inverse().transform_point3(place);
-            let distance = twice.surface(local.into()).distance;
-            assert!(distance.abs() < 1e-4, "{twice:?}: {local} is {distance} m from the surface");
+            let distance = solid.surface(local.into()).distance;
+            assert!(distance.abs() < 1e-4, "{solid:?}: {local} is {distance} m from the surface");
         }
     }
 }
