@@ -55,7 +55,8 @@ pub struct Cloth {
     /// [`ClothSolver::Strands`] chooses [`substeps`](Self::substeps) and [`levels`](Self::levels) by, where they aren't
     /// set by hand. The smaller, the more it costs, and the livelier the cloth.
     pub max_strain: f32,
-    /// Substeps per step, at least 1. `None` for as many as [`max_strain`](Self::max_strain) needs, and at least 8 near
+    /// Substeps per step, at least 1. `None` for as many as [`max_strain`](Self::max_strain) needs; on a mesh without rows and
+    /// columns at least 8, three for each ten vertices along a side, and up to 32 where triangles are narrow; at least 8 near
     /// obstacles, in a hand and without tethers; half as many more with [`SelfCollision::Robust`], 16 at least; three times
     /// as many, 32 at least, near solids with edges, and thin ones, and twice that near tips. With [`ClothSolver::Xpbd`] for 8.
     pub substeps: Option<u32>,

@@ -69,6 +69,12 @@ impl ClothState {
             return;
         }
         self.rest_scale.metric = Some(metric);
+        if Mat3A::IDENTITY.abs_diff_eq(metric, ROUNDING) {
+            if let Some(built) = self.rest_scale.built.take() {
+                (self.topology, self.tethers) = *built;
+            }
+            return;
+        }
         let as_built = || Box::new((self.topology.clone(), self.tethers.clone()));
         let (topology, tethers) = &**self.rest_scale.built.get_or_insert_with(as_built);
         stretch((Arc::make_mut(&mut self.topology), &mut self.tethers), (topology, tethers), change);

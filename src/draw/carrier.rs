@@ -34,6 +34,7 @@ impl Carry {
         }
         self.carriers.extend(state.carriers.iter().map(|carrier| {
             let pose = carrier.entity.and_then(|entity| poses.get(entity).ok()).map(GlobalTransform::affine);
+            let pose = pose.filter(|pose| carrier.pose().is_some() && pose.is_finite());
             pose.and_then(|pose| carrier.carry(origin, now, pose, place)).unwrap_or(self.alone)
         }));
     }

@@ -206,7 +206,7 @@ impl Topology {
     }
 
     /// Where the particles stand while a step runs.
-    pub(super) fn order(&self) -> Order {
+    pub(crate) fn order(&self) -> Order {
         self.lattice.as_ref().map_or(Order::plain(self.particle_count()), Lattice::order)
     }
 

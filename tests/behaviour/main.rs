@@ -44,13 +44,13 @@ mod presets;
 mod recovery;
 mod reflection;
 mod removal;
+mod scaled;
 mod scaled_obstacles;
 mod schedules;
-#[cfg(feature = "mesh_colliders")]
-mod skinned_colliders;
-mod scaled;
 mod several_targets;
 mod sides;
+#[cfg(feature = "mesh_colliders")]
+mod skinned_colliders;
 mod skins;
 mod small_cloth;
 mod stretch;
