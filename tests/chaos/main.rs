@@ -13,6 +13,6 @@ fn random_scenes_stay_finite_and_panic_nowhere() {
 
 #[test]
 fn a_scene_follows_from_its_seed() {
-    let fingerprints = |threads| run(&Options { threads: Some(threads), ..Options::of(0..12) }, drop).fingerprints();
+    let fingerprints = |threads| run(&Options { threads: Some(threads), ..Options::of(0..12) }, |_| ()).fingerprints();
     assert_eq!(fingerprints(1), fingerprints(3));
 }

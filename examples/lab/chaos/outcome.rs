@@ -19,9 +19,9 @@ pub struct Outcome {
     /// Frames after which something wasn't finite, and what it was in the first of them.
     pub not_finite: u32,
     pub first_not_finite: Option<String>,
-    /// Times that a cloth was put back to its last finite pose, and when it first was.
+    /// Times that a cloth was put back to its last finite pose, and which first was.
     pub put_back: u32,
-    pub first_put_back: Option<u32>,
+    pub first_put_back: Option<String>,
     /// The longest step, s, and the longest over the number of particles, µs.
     pub longest_step: f64,
     pub longest_per_particle: f64,

@@ -23,9 +23,12 @@ pub struct Stage {
     pub grabs: Vec<(Entity, GrabId)>,
 }
 
-/// Which cloths have been put back since the latest frame.
+/// What cloths have announced since the latest frame.
 #[derive(Resource, Default)]
-pub struct Heard(pub Vec<(Entity, ResetCause)>);
+pub struct Heard {
+    pub reset: Vec<(Entity, ResetCause)>,
+    pub failed: Vec<(Entity, ClothError)>,
+}
 
 impl Stage {
     pub fn new(mut dice: Dice, diary: Diary) -> Self {
@@ -77,7 +80,10 @@ fn app(dice: &mut Dice) -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin, plugin.single_threaded()))
         .init_resource::<Heard>()
-        .add_observer(|event: On<ClothReset>, mut heard: ResMut<Heard>| heard.0.push((event.entity, event.cause)));
+        .add_observer(|event: On<ClothReset>, mut heard: ResMut<Heard>| heard.reset.push((event.entity, event.cause)))
+        .add_observer(|event: On<ClothFailed>, mut heard: ResMut<Heard>| {
+            heard.failed.push((event.entity, event.error.clone()));
+        });
     app.finish();
     app.cleanup();
     for (_, schedule) in app.world_mut().resource_mut::<Schedules>().iter_mut() {

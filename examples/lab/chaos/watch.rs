@@ -3,6 +3,7 @@
 use core::hash::BuildHasher;
 
 use bevy::{
+    ecs::entity_disabling::Disabled,
     mesh::{MeshVertexAttribute, VertexAttributeValues},
     platform::hash::FixedHasher,
     prelude::*,
@@ -17,12 +18,18 @@ use super::{
 /// Looks at a scene after a frame.
 pub fn look(stage: &mut Stage, outcome: &mut Outcome) {
     let frame = stage.diary.frame();
-    let heard = core::mem::take(&mut stage.app.world_mut().resource_mut::<Heard>().0);
-    for (cloth, cause) in heard {
+    let heard = core::mem::take(stage.app.world_mut().resource_mut::<Heard>().into_inner());
+    for (cloth, error) in heard.failed {
+        stage.diary.note(format_args!("cloth {cloth} has failed: {error}"));
+    }
+    for (cloth, cause) in heard.reset {
         if cause == ResetCause::NotFinite {
             stage.diary.note(format_args!("cloth {cloth} was put back to its last finite pose"));
             outcome.put_back += 1;
-            outcome.first_put_back.get_or_insert(frame);
+            outcome.first_put_back.get_or_insert_with(|| {
+                let solver = stage.app.world().get::<Cloth>(cloth).map(|cloth| cloth.solver);
+                format!("cloth {cloth} in frame {frame}, {solver:?}")
+            });
         }
     }
     let mut found: Option<String> = None;
@@ -32,9 +39,6 @@ pub fn look(stage: &mut Stage, outcome: &mut Outcome) {
         let (Some(state), Some(status)) = (world.get::<ClothState>(cloth), world.get::<ClothStatus>(cloth)) else {
             continue;
         };
-        if let ClothStatus::Failed(error) = status {
-            stage.diary.note(format_args!("cloth {cloth} has failed: {error}"));
-        }
         if *status != ClothStatus::Ready {
             continue;
         }
@@ -68,6 +72,10 @@ fn what_is_not_finite(world: &World, cloth: Entity, state: &ClothState) -> Optio
     }
     if let Some(particle) = state.velocities().position(|velocity| !velocity.is_finite()) {
         return Some(format!("the velocity of particle {particle} isn't finite"));
+    }
+    if world.get::<Disabled>(cloth).is_some() {
+        // A mesh that it was given meanwhile is drawn as it is.
+        return None;
     }
     let drawn = world.get::<Mesh3d>(cloth).and_then(|mesh| world.resource::<Assets<Mesh>>().get(&mesh.0))?;
     let attributes = [Mesh::ATTRIBUTE_POSITION, Mesh::ATTRIBUTE_NORMAL, Mesh::ATTRIBUTE_TANGENT];

@@ -70,11 +70,13 @@ pub fn remesh(stage: &mut Stage) {
     });
 }
 
-/// Changes meshes, be they those of cloths or of obstacles.
+/// Changes meshes, be they those that cloths were made from or those of obstacles. What cloths draw is theirs.
 pub fn reshape(stage: &mut Stage) {
     let (told, mesh) = mesh::roll(&mut stage.dice, MOST_PARTICLES);
+    let drawn = stage.cloths.iter().filter_map(|&cloth| stage.app.world().get::<Mesh3d>(cloth));
+    let drawn: Vec<AssetId<Mesh>> = drawn.map(|mesh| mesh.id()).collect();
     let mut meshes = stage.app.world_mut().resource_mut::<Assets<Mesh>>();
-    let mut ids: Vec<AssetId<Mesh>> = meshes.ids().collect();
+    let mut ids: Vec<AssetId<Mesh>> = meshes.ids().filter(|id| !drawn.contains(id)).collect();
     ids.sort_unstable();
     let Some(id) = stage.dice.any(&ids) else { return };
     if let Some(mut asset) = meshes.get_mut(id) {
