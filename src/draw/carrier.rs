@@ -27,7 +27,7 @@ impl Carrier {
     /// relative to `place`, with the carrier at `pose`.
     pub fn carry(&self, origin: Vec3A, now: f32, pose: Affine3A, place: Vec3A) -> Affine3A {
         let then = lerp(self.start, self.end, now);
-        if pose == then || !is_invertible(&then) {
+        if pose == then || !is_invertible(&then) || !pose.is_finite() {
             return Affine3A::from_translation((origin - place).into());
         }
         let matrix3 = pose.matrix3 * then.matrix3.inverse();
