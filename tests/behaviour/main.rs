@@ -47,4 +47,5 @@ mod schedules;
 #[cfg(feature = "mesh_colliders")]
 mod skinned_colliders;
 mod stretch;
+mod violence;
 mod winds;
