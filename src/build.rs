@@ -65,6 +65,9 @@ pub fn particles_of_vertices(mesh: &Mesh, to_world: Mat3A) -> Result<Vec<Option<
     Ok(welded.particle_of_vertex.iter().map(particle).collect())
 }
 
+/// Particles farther than this from the mesh's origin, m, are beyond what areas and volumes can be computed of.
+pub(crate) const FARTHEST: f32 = 1e7;
+
 /// Welds a mesh and joins its particles with springs.
 fn particles_of(source: &SourceMesh, to_world: Mat3A) -> Result<(Welded, Topology), ClothError> {
     let mut welded = weld::weld(&source.positions, &source.triangles);
@@ -72,11 +75,16 @@ fn particles_of(source: &SourceMesh, to_world: Mat3A) -> Result<(Welded, Topolog
         let place = |&vertex: &u32| to_world * source.positions[vertex as usize];
         welded.vertex_of_particle.iter().map(place).collect()
     };
+    let places = rest(&welded);
+    if let Some(particle) = places.iter().position(|place| !(place.abs().max_element() <= FARTHEST)) {
+        let (vertex, distance) = (welded.vertex_of_particle[particle], places[particle].abs().max_element());
+        return Err(ClothError::PositionTooFar { vertex, distance });
+    }
     let triangles = |welded: &Welded| -> Vec<[u32; 3]> {
         let particle = |vertex: u32| welded.particle_of_vertex[vertex as usize];
         source.triangles.iter().map(|t| t.map(particle)).collect()
     };
-    let mut shape = Shape::find(&rest(&welded), &triangles(&welded))?;
+    let mut shape = Shape::find(&places, &triangles(&welded))?;
     if let Some(order) = order::better(welded.vertex_of_particle.len(), &shape) {
         welded.reorder(&order);
         shape = Shape::find(&rest(&welded), &triangles(&welded))?;

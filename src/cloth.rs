@@ -76,7 +76,7 @@ pub struct Cloth {
     /// rubber. [`ClothSolver::Explicit`] hasn't them.
     pub tether_slack: Option<f32>,
     /// The most that a particle may be faster than what the cloth is pinned to, m/s, greater than 0. It keeps single
-    /// particles from thrashing about; 50 is faster than any storm. [`ClothSolver::Explicit`] hasn't it.
+    /// particles from thrashing about; 50 is faster than any storm.
     pub max_velocity: f32,
     /// Density of the air around in kg/m³. 1.225 at sea level, 0 for a vacuum.
     pub fluid_density: f32,

@@ -38,6 +38,17 @@ pub enum ClothError {
         /// The mesh's vertex index.
         vertex: u32,
     },
+    /// A position is so far away that it can't be computed with.
+    #[error(
+        "the position of vertex {vertex} is {distance} m from the mesh's origin in the world's scale, which is too far to \
+         compute with; keep it below 10000000 m, by the mesh's units or the entity's scale"
+    )]
+    PositionTooFar {
+        /// The mesh's vertex index.
+        vertex: u32,
+        /// Its distance under the entity's scale, m.
+        distance: f32,
+    },
     /// An index points past the last vertex.
     #[error("a triangle uses vertex {vertex}, but the mesh has {count} vertices; mend its indices")]
     IndexOutOfRange {

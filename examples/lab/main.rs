@@ -14,6 +14,7 @@ use clap::{Parser, Subcommand, builder::PossibleValuesParser};
 use serde_json::Value;
 
 mod app;
+mod chaos;
 mod contact;
 mod hang;
 mod laboratory;
@@ -114,6 +115,8 @@ enum Experiment {
         #[arg(long, value_name = "FILE.md", conflicts_with_all = ["names", "brief"])]
         report: Option<PathBuf>,
     },
+    /// Random scenes: counts what panics, isn't finite or is put back. A line for each seed that fails, and one for all
+    Chaos(chaos::Options),
     #[command(flatten)]
     Contact(Contact),
 }
@@ -138,9 +141,17 @@ fn run(Cli { sweep, experiment }: Cli) -> io::Result<()> {
             run_laboratory(&names, brief);
             Ok(())
         }
+        Some(Experiment::Chaos(options)) => run_chaos(&options),
         Some(experiment) => experiment.measure().map(|line| println!("{line}")),
         None => Ok(()),
     }
+}
+
+/// Runs random scenes. An error where something happened that never may.
+fn run_chaos(options: &chaos::Options) -> io::Result<()> {
+    let tally = chaos::run(options, |outcome| println!("{}", outcome.json()));
+    println!("{}", tally.json());
+    if tally.has_failed() { Err(io::Error::other("seeds have failed: run one alone with --verbose")) } else { Ok(()) }
 }
 
 fn laboratory_name() -> PossibleValuesParser {
@@ -183,7 +194,9 @@ impl Experiment {
             Self::App { options } => app::one_cloth(options),
             Self::Build { options } => Ok(app::building(options)),
             Self::Many { cloths, frames, single_threaded } => Ok(app::many_flags(*cloths, *frames, *single_threaded)),
-            Self::Sizes { .. } | Self::Laboratory { .. } => Err(io::Error::other("these are several measurements")),
+            Self::Sizes { .. } | Self::Laboratory { .. } | Self::Chaos(_) => {
+                Err(io::Error::other("these are several measurements"))
+            }
         }
     }
 }

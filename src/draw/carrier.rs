@@ -34,7 +34,7 @@ impl Carry {
         }
         self.carriers.extend(state.carriers.iter().map(|carrier| {
             let pose = carrier.entity.and_then(|entity| poses.get(entity).ok()).map(GlobalTransform::affine);
-            let pose = pose.filter(|pose| carrier.pose().is_some() && pose.is_finite());
+            let pose = pose.filter(|_| carrier.pose().is_some());
             pose.and_then(|pose| carrier.carry(origin, now, pose, place)).unwrap_or(self.alone)
         }));
     }
@@ -65,7 +65,7 @@ impl Carrier {
     /// relative to `place`, with the carrier at `pose`. None where it hasn't moved, or was flat.
     fn carry(&self, origin: Vec3A, now: f32, pose: Affine3A, place: Vec3A) -> Option<Affine3A> {
         let then = lerp(self.start, self.end, now);
-        if pose == then || !is_invertible(&then) {
+        if pose == then || !is_invertible(&then) || !pose.is_finite() {
             return None;
         }
         let matrix3 = pose.matrix3 * then.matrix3.inverse();

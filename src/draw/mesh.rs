@@ -122,6 +122,11 @@ impl Drawn {
                 self.particles.extend(places.map(|place| to_local * carry.transform_point3a(place)));
             }
         }
+        // What doesn't fit into an f32, far away or under a huge scale, leaves what was drawn.
+        if !self.particles.iter().all(|place| place.is_finite()) {
+            self.is_new = false;
+            return;
+        }
         for (place, &particle) in self.positions.iter_mut().zip(&*binding.particle_of_vertex) {
             if particle != NO_PARTICLE {
                 *place = self.particles[particle as usize].to_array();

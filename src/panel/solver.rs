@@ -103,6 +103,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
             }
             ClothSolver::Explicit => {
                 MAX_SUBSTEPS.show_count(ui, &mut cloth.max_substeps, differs("max_substeps"));
+                MAX_VELOCITY.show(ui, &mut cloth.max_velocity, differs("max_velocity"));
             }
         }
         show_advice(ui, model);

@@ -68,7 +68,7 @@ pub struct StepContext<'a> {
     pub mounted: &'a [Mounted],
     /// Hands that pull at the cloth.
     pub grabs: &'a [Grab],
-    /// The most that a particle may be faster than what holds the cloth, m/s. Not for [`Method::Explicit`].
+    /// The most that a particle may be faster than what holds the cloth, m/s.
     pub max_velocity: f32,
     /// Longest allowed distances to fixed particles. Not for [`Method::Explicit`].
     pub tethers: Option<&'a Tethers>,

@@ -13,22 +13,41 @@ use super::{
 /// is bent out of its rest shape.
 const STABLE: f32 = 3.6;
 
-/// By how much more than they are already springs that stiffen may be stretched in a step and still be stable, no unit.
+/// By how much more than it is already a sheet may be stretched in a step and still be as stiff as it is, no unit. Beyond
+/// that it stiffens no more: however a pin is jerked, the step stays stable.
 const MORE_STRETCHED: f32 = 0.2;
 
-/// Substeps that keep a step of `dt` seconds stable, and the share of stiffness and damping that `ctx.max_substeps` of
-/// them can carry: 1 unless more would be needed.
+/// What keeps a step stable.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stability {
+    /// Substeps that it takes.
+    pub needed: u32,
+    /// Share of stiffness and damping that [`max_substeps`](StepContext::max_substeps) of them can carry: 1 unless more
+    /// would be needed.
+    pub scale: f32,
+    /// Length over rest length beyond which faces may get no stiffer.
+    pub longest: f32,
+}
+
+impl Stability {
+    /// With so many substeps, whatever the stiffness.
+    pub fn unconditional(substeps: u32) -> Self {
+        Self { needed: substeps, scale: 1.0, longest: f32::MAX }
+    }
+}
+
+/// What keeps a step of `dt` seconds stable.
 ///
 /// Symplectic Euler of x'' = -ω² x - γ x' is stable while ω² h² + 2 γ h < 4, kept below [`STABLE`] here. The largest ω²
 /// and γ of the whole cloth are bounded by Gershgorin's circles, twice the sum over a particle's springs of k/m and of
 /// c/m.
-pub(super) fn stable_substeps(
+pub(super) fn stability(
     lanes: &Lanes,
     topology: &Topology,
     ctx: &StepContext,
     dt: f32,
     sums: &mut Vec<(f32, f32)>,
-) -> (u32, f32) {
+) -> Stability {
     let stretched = MORE_STRETCHED + most_stretched(lanes, topology, &ctx.material);
     sum_spring_constants(topology, &ctx.material, stretched, sums);
     if let Some(moduli) = ctx.material.moduli() {
@@ -44,21 +63,22 @@ pub(super) fn stable_substeps(
     let longest = STABLE / (gamma + (gamma * gamma + STABLE * omega_squared).sqrt());
     let needed = (dt / longest).ceil().max(1.0);
     let most = ctx.max_substeps.max(1);
-    if needed <= most as f32 {
-        return (needed as u32, 1.0);
-    }
     let h = dt / most as f32;
-    (needed as u32, STABLE / (omega_squared * h * h + 2.0 * gamma * h))
+    let is_enough = needed <= most as f32;
+    let scale = if is_enough { 1.0 } else { STABLE / (omega_squared * h * h + 2.0 * gamma * h) };
+    Stability { needed: needed as u32, scale, longest: 1.0 + stretched }
 }
 
-/// The largest strain of a thread, no unit: 0 where none is stretched, or where stiffness doesn't change with it.
+/// The largest strain of a sheet, no unit: 0 where none is stretched, or where stiffness doesn't change with it.
 fn most_stretched(lanes: &Lanes, topology: &Topology, material: &Material) -> f32 {
-    if material.moduli().is_none_or(|moduli| moduli.stiffening == [0.0; 2]) {
+    if material.moduli().is_none() {
         return 0.0;
     }
     let place = |particle: u32| lanes.position.get(lanes.order.slot(particle));
     let strain = |spring: &Spring| place(spring.a).distance(place(spring.b)) / spring.rest - 1.0;
-    topology.springs_of(SpringKind::Structural).map(strain).fold(0.0, f32::max)
+    let of_threads = topology.springs_of(SpringKind::Structural).map(strain).fold(0.0, f32::max);
+    let of_faces = topology.faces.iter().map(|face| Deformed::new(face, face.particles.map(place)).longest() - 1.0);
+    of_faces.fold(of_threads, f32::max)
 }
 
 /// Adds up stiffness and damping of the springs at each particle, where threads are `stretched` by so much.
@@ -112,7 +132,7 @@ pub(super) fn add_spring_forces(
     particles: &Particles,
     topology: &Topology,
     material: &Material,
-    stiffness_scale: f32,
+    Stability { scale: stiffness_scale, longest, .. }: Stability,
     force: &mut [Vec3A],
 ) {
     for batch in &topology.batches {
@@ -122,7 +142,7 @@ pub(super) fn add_spring_forces(
             let (p, q) = (a as usize, b as usize);
             let along = particles.position[p] - particles.position[q];
             let length = along.length();
-            let k = law.secant(length / rest - 1.0) * stiffness_scale;
+            let k = law.secant((length / rest).min(longest) - 1.0) * stiffness_scale;
             let c = law.constants.damping * stiffness_scale;
             let n = along.normalize_or_zero();
             let approach = n.dot(particles.velocity[p] - particles.velocity[q]);
@@ -138,14 +158,14 @@ pub(super) fn add_sheet_forces(
     particles: &Particles,
     topology: &Topology,
     moduli: &Moduli,
-    stiffness_scale: f32,
+    Stability { scale: stiffness_scale, longest, .. }: Stability,
     force: &mut [Vec3A],
 ) {
     let at = |particle: u32| particles.position[particle as usize];
     let rate = |particle: u32| particles.velocity[particle as usize];
     for face in &topology.faces {
         let rates = Deformed::new(face, face.particles.map(rate));
-        let [on_b, on_c] = Deformed::new(face, face.particles.map(at)).forces(face, moduli, &rates);
+        let [on_b, on_c] = Deformed::new(face, face.particles.map(at)).forces(face, moduli, &rates, longest);
         for (&particle, pull) in face.particles.iter().zip([-(on_b + on_c), on_b, on_c]) {
             force[particle as usize] += pull * stiffness_scale;
         }

@@ -20,6 +20,8 @@ pub(super) struct Motion<'a> {
     pub decay: f32,
     /// Duration of the substep, s.
     pub h: f32,
+    /// The most that particles may be fast, where nothing comes after that sees to it.
+    pub limit: Option<SpeedLimit>,
 }
 
 /// Symplectic Euler: velocities from forces (N) and gravity (m/s²), then positions from the new velocities.
@@ -42,7 +44,7 @@ fn predict_eights<S: Simd>(simd: S, run: &mut Run, motion: Motion) {
 impl Motion<'_> {
     /// Gravity and damping for `h` seconds.
     pub fn free(ctx: &StepContext, h: f32) -> Self {
-        Self { gravity: ctx.gravity, force: None, decay: ops::exp(-ctx.material.damping * h), h }
+        Self { gravity: ctx.gravity, force: None, decay: ops::exp(-ctx.material.damping * h), h, limit: None }
     }
 
     /// Where the particles of a block come, and how fast they are then. Fixed ones stay.
@@ -62,6 +64,9 @@ impl Motion<'_> {
             after = after + Vec3x8::load(simd, &force.0[block]) * (w * duration);
         }
         let is_free = w.simd_gt(f32x8::splat(simd, 0.0));
+        if let Some(limit) = self.limit {
+            after = limit.keep(simd, after);
+        }
         ((place + after * duration).or(is_free, place), after.or(is_free, before))
     }
 }
@@ -73,6 +78,23 @@ pub(super) struct SpeedLimit {
     pub around: Vec3A,
     /// The most that a particle may differ from it, m/s.
     pub most: f32,
+}
+
+impl SpeedLimit {
+    /// Velocities within the limit.
+    #[inline(always)]
+    fn keep<S: Simd>(&self, simd: S, velocity: Vec3x8<S>) -> Vec3x8<S> {
+        let around = Vec3x8::splat(simd, self.around.to_array());
+        let most = f32x8::splat(simd, self.most);
+        let relative = velocity - around;
+        let squared = relative.dot(relative);
+        let too_fast = squared.simd_gt(most * most);
+        if too_fast.any_true() {
+            (around + relative * (most / squared.sqrt())).or(too_fast, velocity)
+        } else {
+            velocity
+        }
+    }
 }
 
 /// What comes after the constraints of a substep.
@@ -95,21 +117,15 @@ pub(super) fn finish(run: &mut Run, finish: Finish, instructions: Instructions) 
 
 #[inline(always)]
 fn finish_eights<S: Simd>(simd: S, run: &mut Run, Finish { limit, h, next }: Finish) {
-    let around = Vec3x8::splat(simd, limit.around.to_array());
     let (duration, rate) = (f32x8::splat(simd, h), f32x8::splat(simd, 1.0 / h));
-    let most = f32x8::splat(simd, limit.most);
     let all = run.position.iter_mut().zip(&mut *run.previous).zip(&mut *run.velocity).zip(&*run.inverse_mass);
     for (i, (((position, previous), velocity), w)) in all.enumerate() {
         let (place, w) = (Vec3x8::load(simd, position), lane(simd, w));
         let before = Vec3x8::load(simd, velocity);
         let predicted = Vec3x8::load(simd, previous) + before * duration;
-        let mut after = before + (place - predicted) * rate;
-        let relative = after - around;
-        let squared = relative.dot(relative);
-        let too_fast = w.simd_gt(f32x8::splat(simd, 0.0)) & squared.simd_gt(most * most);
-        if too_fast.any_true() {
-            after = (around + relative * (most / squared.sqrt())).or(too_fast, after);
-        }
+        let after = before + (place - predicted) * rate;
+        let is_free = w.simd_gt(f32x8::splat(simd, 0.0));
+        let mut after = limit.keep(simd, after).or(is_free, after);
         if let Some(motion) = next {
             place.store(previous);
             let (next_place, next_velocity) = motion.of(simd, run.first + i, place, after, w);

@@ -13,7 +13,7 @@ use super::{
         touch::{self, Touch},
     },
     effort::Care,
-    explicit,
+    explicit::{self, Stability},
     force::wind,
     integrate::{self, Motion, SpeedLimit},
     share,
@@ -129,8 +129,7 @@ struct Plan<'a> {
     longest_edge: f32,
     levels: &'a [LevelPass],
     substeps: u32,
-    needed_substeps: u32,
-    stiffness_scale: f32,
+    stability: Stability,
 }
 
 impl<'a> Plan<'a> {
@@ -164,20 +163,19 @@ impl<'a> Plan<'a> {
         let (wanted, levels) = ctx.effort.of_step(care, dt);
         // Levels move what hangs on a body without its weight on the body.
         let levels = if is_mounted { &[] } else { levels };
-        let (most, needed_substeps, stiffness_scale, levels) = match ctx.method {
-            Method::Strands => (u32::MAX, wanted, 1.0, levels),
-            Method::Xpbd => (u32::MAX, wanted, 1.0, &[][..]),
+        let (most, stability, levels) = match ctx.method {
+            Method::Strands => (u32::MAX, Stability::unconditional(wanted), levels),
+            Method::Xpbd => (u32::MAX, Stability::unconditional(wanted), &[][..]),
             Method::Explicit => {
                 scratch.lanes.load(particles, topology.order(), scratch.instructions);
                 grab::take_up(&mut scratch.lanes, ctx.grabs);
                 scratch.mounts.begin(&mut scratch.lanes, topology, ctx);
-                let (needed, scale) =
-                    explicit::stable_substeps(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
-                (ctx.max_substeps.max(1), needed, scale, &[][..])
+                let stability = explicit::stability(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
+                (ctx.max_substeps.max(1), stability, &[][..])
             }
         };
-        let substeps = needed_substeps.min(most);
-        Some(Self { dt, is_near, longest_edge, levels, substeps, needed_substeps, stiffness_scale })
+        let substeps = stability.needed.min(most);
+        Some(Self { dt, is_near, longest_edge, levels, substeps, stability })
     }
 }
 
@@ -194,7 +192,6 @@ pub(super) struct Running<'a> {
     pub longest_edge: f32,
     dt: f32,
     substeps: u32,
-    needed_substeps: u32,
     /// Substeps from one renewal of the air's forces to the next.
     air_interval: u32,
     /// Whether the free motion of the coming substep is done.
@@ -216,7 +213,7 @@ impl<'a> Running<'a> {
         substeps: u32,
         offset: Vec3A,
     ) -> Self {
-        let Plan { dt, is_near, longest_edge, levels, needed_substeps, stiffness_scale, .. } = plan;
+        let Plan { dt, is_near, longest_edge, levels, stability, .. } = plan;
         let h = dt / substeps as f32;
         let helpers = helpers(topology, ctx);
         let Loaded { is_pushed, has_moved } = load(particles, topology, ctx, h, helpers, scratch);
@@ -225,16 +222,15 @@ impl<'a> Running<'a> {
         scratch.faces.resize_with(ctx.obstacles.len().max(scratch.faces.len()), Faces::default);
         scratch.faces.iter_mut().for_each(Faces::begin);
         scratch.mounts.begin(&mut scratch.lanes, topology, ctx);
-        let most = if ctx.method == Method::Explicit { f32::INFINITY } else { ctx.max_velocity };
         let substep = Substep {
             topology,
             ctx,
             h,
-            stiffness_scale,
+            stability,
             is_pushed,
             is_near,
             touches: ctx.self_collision != SelfCollision::Off || is_near,
-            limit: SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most },
+            limit: SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most: ctx.max_velocity },
             helpers,
             last: Last::between(ctx.anchors, topology.order()),
             levels,
@@ -253,7 +249,6 @@ impl<'a> Running<'a> {
             longest_edge,
             dt,
             substeps,
-            needed_substeps,
             air_interval: ((1.0 / (AIR_RATE * h)) as u32).max(1),
             has_moved,
             is_finished: false,
@@ -327,7 +322,7 @@ impl<'a> Running<'a> {
 
     /// Hands the state back.
     fn end(self) -> StepReport {
-        let Self { particles, scratch, substep, substeps, needed_substeps, contacts, touched, .. } = self;
+        let Self { particles, scratch, substep, substeps, contacts, touched, .. } = self;
         let contacts = contacts + touched;
         let Scratch { lanes, steady_force, instructions, .. } = scratch;
         match substep.helpers {
@@ -335,7 +330,8 @@ impl<'a> Running<'a> {
             None => lanes.store(particles, *instructions),
         }
         let steady_force = if substep.is_pushed { steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
-        StepReport { substeps, needed_substeps, stiffness_scale: substep.stiffness_scale, contacts, steady_force }
+        let Stability { needed: needed_substeps, scale: stiffness_scale, .. } = substep.stability;
+        StepReport { substeps, needed_substeps, stiffness_scale, contacts, steady_force }
     }
 }
 

@@ -70,6 +70,16 @@ fn meshes_without_a_surface_are_refused() {
 }
 
 #[test]
+fn meshes_that_are_too_far_away_to_compute_with_are_refused() {
+    for collider in [ClothCollider::mesh(), ClothCollider::convex_hull()] {
+        let mesh = Mesh::from(Cuboid::default()).translated_by(Vec3::X * 1e30);
+        let mut quiet = Quiet::new();
+        let entity = spawn(&mut quiet.app, mesh, collider);
+        assert_refused(&mut quiet, entity, &["m from the mesh's origin"]);
+    }
+}
+
+#[test]
 fn a_hull_of_what_is_flat_is_refused() {
     let mut quiet = Quiet::new();
     let entity = spawn(&mut quiet.app, Plane3d::default(), ClothCollider::convex_hull());

@@ -94,8 +94,10 @@ fn positions_that_are_not_finite_are_refused() {
 
 #[test]
 fn positions_that_are_too_large_to_compute_with_are_refused() {
-    let mesh = bare(square(&[]).into_iter().map(|p| p.map(|x| x * 1e30)).collect(), &SQUARE);
-    assert_refused(mesh, ClothError::Empty);
+    for size in [1.1e7, 1e12, 1e18] {
+        let mesh = bare(square(&[]).into_iter().map(|p| p.map(|x| x * size)).collect(), &SQUARE);
+        assert_refused(mesh, ClothError::PositionTooFar { vertex: 1, distance: size });
+    }
 }
 
 #[test]

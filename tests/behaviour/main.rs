@@ -55,4 +55,5 @@ mod skins;
 mod small_cloth;
 mod stretch;
 mod teleports;
+mod violence;
 mod winds;

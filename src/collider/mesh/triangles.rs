@@ -8,7 +8,11 @@ use bevy::{
 use parry3d::shape::{TriMesh, TriMeshFlags};
 
 use crate::collider::error::ColliderError;
-use crate::{build::weld::weld, error::ClothError, solver::TriangleMesh};
+use crate::{
+    build::{FARTHEST, weld::weld},
+    error::ClothError,
+    solver::TriangleMesh,
+};
 
 /// A closed surface whose volume is less than this share of its area times its size is two sheets, one on the other.
 pub(super) const THINNEST: f64 = 1e-5;
@@ -51,11 +55,16 @@ pub(crate) fn sheet(points: &[Vec3], triangles: &[[u32; 3]], scale: Mat3A) -> Re
     Ok(Made { mesh: with_area(&points, triangles, false)?, origin })
 }
 
-/// The places of the points with these `numbers`, all of them finite.
+/// The places of the points with these `numbers`, all of them finite and near enough to compute with.
 pub(super) fn places(points: &[Vec3], numbers: &[u32], scale: Mat3A) -> Result<Vec<Vec3>, ColliderError> {
     // Adding zero makes -0 the same as 0.
     let places: Vec<Vec3> = numbers.iter().map(|&i| scale * points[i as usize] + Vec3::ZERO).collect();
-    if places.iter().all(|place| place.is_finite()) { Ok(places) } else { Err(ColliderError::NoSize) }
+    let Some(far) = places.iter().position(|place| !(place.abs().max_element() <= FARTHEST)) else { return Ok(places) };
+    if !places[far].is_finite() {
+        return Err(ColliderError::NoSize);
+    }
+    let distance = places[far].abs().max_element();
+    Err(ClothError::PositionTooFar { vertex: numbers[far], distance }.into())
 }
 
 /// Drops what is no triangle or there already, and finds out whether the others enclose a volume.

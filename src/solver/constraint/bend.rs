@@ -43,7 +43,7 @@ use arms::pull_batch;
 use stages::Stages;
 
 /// How much stiffer a bend may be because of what is in the turn of its frame.
-const TURNING: f32 = 1.5;
+const TURNING: f32 = 2.0;
 
 /// How bends are solved in a step.
 #[derive(Clone, Copy, Debug)]

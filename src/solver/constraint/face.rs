@@ -209,6 +209,11 @@ impl Deformed {
         [self.warp.length() - 1.0, self.weft.length() - 1.0, self.warp.dot(self.weft)]
     }
 
+    /// Length over rest length along the direction in which it is stretched more.
+    pub fn longest(&self) -> f32 {
+        self.warp.length().max(self.weft.length())
+    }
+
     /// Energy over the area, J/m².
     pub fn energy(&self, moduli: &Moduli) -> f32 {
         let [u, v, shear] = self.strains();
@@ -218,17 +223,23 @@ impl Deformed {
 
     /// Forces on the second and third corner of a face, N, with its corners' velocities (m/s) in `rates`. The first
     /// corner takes what is left.
-    pub fn forces(&self, face: &Face, moduli: &Moduli, rates: &Self) -> [Vec3A; 2] {
-        let [u, v, shear] = self.strains();
+    ///
+    /// A face that is stretched to more than `longest` times its length gets no stiffer from there on: what a step in time
+    /// is to be stable with has to be known before it.
+    pub fn forces(&self, face: &Face, moduli: &Moduli, rates: &Self, longest: f32) -> [Vec3A; 2] {
+        let [u, v, _] = self.strains();
         let (along_u, along_v) = (self.warp.normalize_or_zero(), self.weft.normalize_or_zero());
         let damped = |strain: f32, rate: f32| strain + moduli.stretch_damping * rate;
-        let [k_u, k_v] = [thread(moduli, Grain::Warp).secant(u), thread(moduli, Grain::Weft).secant(v)];
+        let secant = |grain, strain: f32| thread(moduli, grain).secant(strain.min(longest - 1.0));
+        let [k_u, k_v] = [secant(Grain::Warp, u), secant(Grain::Weft, v)];
+        // The stiffness against shear grows with the square of the stretch.
+        let kept = (longest / (u.max(v) + 1.0)).min(1.0);
+        let (warp, weft) = (self.warp * kept, self.weft * kept);
         let (u, v) = (damped(u, along_u.dot(rates.warp)), damped(v, along_v.dot(rates.weft)));
-        let shear = damped(shear, self.warp.dot(rates.weft) + self.weft.dot(rates.warp));
+        let shear = damped(warp.dot(weft), warp.dot(rates.weft) + weft.dot(rates.warp));
         let g = moduli.shear;
         let (tension_u, tension_v) = (k_u * u + g * (u + v), k_v * v + g * (u + v));
-        let (stress_u, stress_v) =
-            (along_u * tension_u + self.weft * (g * shear), along_v * tension_v + self.warp * (g * shear));
+        let (stress_u, stress_v) = (along_u * tension_u + weft * (g * shear), along_v * tension_v + warp * (g * shear));
         [0, 1].map(|i| (stress_u * face.warp[i] + stress_v * face.weft[i]) * -face.area)
     }
 }
@@ -277,7 +288,7 @@ mod tests {
         // Of shear alone, half to each side.
         let corners = deformed(Vec3A::new(1.0 + weft, angle / 2.0, 0.0), Vec3A::new(angle / 2.0, 1.0 + warp, 0.0));
         let at_rest = Deformed::new(&FACE, [Vec3A::ZERO; 3]);
-        let forces = Deformed::new(&FACE, corners).forces(&FACE, &linear, &at_rest);
+        let forces = Deformed::new(&FACE, corners).forces(&FACE, &linear, &at_rest, f32::MAX);
         // Virtual work: the stress is the sum of forces times places over the area.
         let stress = |i: usize, j: usize| -> f32 {
             let sum: f32 = forces.iter().zip(&corners[1..]).map(|(force, p)| force[i] * p[j]).sum();
@@ -326,7 +337,7 @@ mod tests {
             let (corners, velocities) = state(&noise);
             let rates = Deformed::new(&FACE, velocities);
             let bare = Moduli { stretch_damping: 0.0, ..JERSEY };
-            let [b, c] = Deformed::new(&FACE, corners).forces(&FACE, &bare, &rates);
+            let [b, c] = Deformed::new(&FACE, corners).forces(&FACE, &bare, &rates, f32::MAX);
             for (i, force) in [-(b + c), b, c].into_iter().enumerate() {
                 for axis in [Vec3A::X, Vec3A::Y, Vec3A::Z] {
                     let energy = |way: f32| {
@@ -338,7 +349,7 @@ mod tests {
                     prop_assert!((slope + force.dot(axis)).abs() < 0.2, "{slope} {force}");
                 }
             }
-            let [p, q] = Deformed::new(&FACE, corners).forces(&FACE, &JERSEY, &rates);
+            let [p, q] = Deformed::new(&FACE, corners).forces(&FACE, &JERSEY, &rates, f32::MAX);
             let work = (p - b).dot(velocities[1] - velocities[0]) + (q - c).dot(velocities[2] - velocities[0]);
             prop_assert!(work <= 1e-3, "{work}");
         }
@@ -349,7 +360,8 @@ mod tests {
             let h = 5e-4;
             let masses = [2.0, 1.0, 0.5];
             let before = [0, 1, 2].map(|i| corners[i] - velocities[i] * h);
-            let [b, c] = Deformed::new(&FACE, corners).forces(&FACE, &JERSEY, &Deformed::new(&FACE, velocities));
+            let rates = Deformed::new(&FACE, velocities);
+            let [b, c] = Deformed::new(&FACE, corners).forces(&FACE, &JERSEY, &rates, f32::MAX);
             let moved = solved(corners, before, masses, &JERSEY, h, Instructions::Best);
             for i in 0..3 {
                 let expected = [-(b + c), b, c][i] * masses[i] * h * h;

@@ -72,6 +72,14 @@ impl Grab {
         share(0) + share(1) + share(2)
     }
 
+    /// Share of the point that isn't fixed, 0..=1: as much as it can follow. Beside a pin, what is free would have to go any
+    /// distance to bring it all the way.
+    fn free_share(&self, lanes: &Lanes) -> f32 {
+        let is_fixed = |&(&particle, _): &(&u32, f32)| lanes.inverse_mass(lanes.order.slot(particle)) == 0.0;
+        let fixed: f32 = self.particles.iter().zip(self.weights).filter(is_fixed).map(|(_, weight)| weight).sum();
+        (1.0 - fixed).clamp(0.0, 1.0)
+    }
+
     /// Changes the point's position or velocity by `change`: its particles' by bi wi / w of it.
     fn push(&self, lanes: &mut Lanes, change: Vec3A, of: impl Fn(&mut Lanes) -> &mut Points) {
         let w = self.inverse_mass(lanes);
@@ -103,6 +111,7 @@ pub(in crate::solver) fn carry(lanes: &mut Lanes, grabs: &[Grab], span: Range<f3
     for grab in grabs {
         let speed = (grab.end - grab.start) * ((span.end - span.start) / h);
         let lacking = speed - grab.point(lanes.order, &lanes.velocity);
+        let lacking = lacking * grab.free_share(lanes);
         grab.push(lanes, lacking, |lanes| &mut lanes.velocity);
     }
 }

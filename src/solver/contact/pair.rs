@@ -129,6 +129,22 @@ pub struct Given {
     pub angular: Vec3A,
 }
 
+/// How many times as far as features part a particle may be moved for it. One that touches right beside a pin would have to
+/// go any distance, since the pin gives no way.
+const LONGEST_LEVER: f32 = 10.0;
+
+/// What features give way by, 1/kg: the sum of their points' inverse masses, by the squares of their `weights`. No less than
+/// what moves each point by [`LONGEST_LEVER`] times as much as it moves the features.
+#[inline]
+pub fn give<const N: usize>(weights: [f32; N], masses: [f32; N]) -> f32 {
+    let (mut whole, mut most) = (0.0, 0.0_f32);
+    for (weight, w) in weights.into_iter().zip(masses) {
+        whole += weight * weight * w;
+        most = most.max(weight.abs() * w);
+    }
+    whole.max(most / LONGEST_LEVER)
+}
+
 /// How two features part.
 #[derive(Clone, Copy, Debug)]
 pub struct Parting {
@@ -154,7 +170,7 @@ impl Parting {
         let places = all.map(|i| points.position[i]);
         let before = all.map(|i| points.previous[i]);
         let masses = all.map(|i| points.inverse_mass[i]);
-        let give: f32 = weights.iter().zip(masses).map(|(weight, w)| weight * weight * w).sum();
+        let give = give(weights, masses);
         let beside = body.map(|on| on.beside(weights, places));
         let meets = |direction: Vec3A| match (body, beside) {
             (Some(on), Some(beside)) => give + on.body.inverse_mass_at(beside, direction),

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3A;
 
-use super::pair::Points;
+use super::pair::{Points, give};
 
 /// Whether two triangles without a common corner pass through each other: an edge of one pierces the other.
 pub fn intersect(first: [Vec3A; 3], other: [Vec3A; 3]) -> bool {
@@ -85,7 +85,7 @@ impl Tangle {
     pub fn solve(&self, points: &mut Points, far: f32) {
         let all = self.points.map(|i| i as usize);
         let masses = all.map(|i| points.inverse_mass[i]);
-        let give: f32 = self.weights.iter().zip(masses).map(|(weight, w)| weight * weight * w).sum();
+        let give = give(self.weights, masses);
         if give <= 0.0 {
             return;
         }

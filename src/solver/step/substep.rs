@@ -16,7 +16,7 @@ use crate::solver::{
         weave::{self, Last, Weaver},
         yarn::Yarn,
     },
-    explicit,
+    explicit::{self, Stability},
     force::wind,
     integrate::{self, Finish, Motion, SpeedLimit},
     lanes::{Points, Run},
@@ -30,8 +30,8 @@ pub(super) struct Substep<'a> {
     pub ctx: &'a StepContext<'a>,
     /// Duration, s.
     pub h: f32,
-    /// Share of the stiffness and damping that is used.
-    pub stiffness_scale: f32,
+    /// What keeps the step stable.
+    pub stability: Stability,
     /// Whether anything but gravity acts.
     pub is_pushed: bool,
     /// Whether anything is so near that it may be touched.
@@ -91,9 +91,9 @@ impl Substep<'_> {
         steady_force.resize(particles.len(), Vec3A::ZERO);
         force.clone_from(steady_force);
         lanes.store(particles, *instructions);
-        explicit::add_spring_forces(particles, self.topology, &self.ctx.material, self.stiffness_scale, force);
+        explicit::add_spring_forces(particles, self.topology, &self.ctx.material, self.stability, force);
         if let Some(moduli) = self.ctx.material.moduli() {
-            explicit::add_sheet_forces(particles, self.topology, moduli, self.stiffness_scale, force);
+            explicit::add_sheet_forces(particles, self.topology, moduli, self.stability, force);
         }
         applied_force.load(lanes.order, force, *instructions);
     }
@@ -105,7 +105,9 @@ impl Substep<'_> {
     }
 
     fn motion<'a>(&self, force: &'a Points) -> Motion<'a> {
-        Motion { force: self.applied(force), ..Motion::free(self.ctx, self.h) }
+        // The other methods see to it when constraints have been solved.
+        let limit = (self.ctx.method == Method::Explicit).then_some(self.limit);
+        Motion { force: self.applied(force), limit, ..Motion::free(self.ctx, self.h) }
     }
 
     /// The force that is applied, if one is.

@@ -146,16 +146,21 @@ impl<S: Simd> Arms<S> {
         // A bend that is folded up turns with its slightest motion: there, its frame follows by less.
         let size = sum.dot(sum).sqrt() * FOLDED;
         let least = f32x8::splat(simd, f32::MIN_POSITIVE);
-        let length = length.max(size / (w2 + w3).abs().max(least));
-        let width = width.max(size / (w2.abs() + w3.abs()).max(least));
         let one = f32x8::splat(simd, 1.0);
+        let width = width.max(size / (w2.abs() + w3.abs()).max(least));
+        // Where it lies along the edge rather than across, a turn about the edge takes the edge's ends along as far.
+        let lean = (skew / width).abs().max(one);
+        let length = length.max(size * lean / (w2 + w3).abs().max(least));
         let (per_length, per_width) = (one / length, one / width);
         if bending.c > 0.0 {
             let (edge_way, span_way) = (edge - before.0[0], span - (before.0[2] - before.0[1]));
             let rise = normal.dot(edge_way) * per_length;
             let turn = along * ((normal.dot(span_way) - skew * rise) * per_width) - across * rise
                 + normal * (across.dot(edge_way) * per_length);
-            stress = stress + (sum - before.sum(weights) - turn.cross(sum)) * f32x8::splat(simd, bending.c);
+            // What goes farther than it is long within a substep was put there, as by tethers, and isn't slowed down.
+            let (size, way) = (edge.dot(edge) + span.dot(span), edge_way.dot(edge_way) + span_way.dot(span_way));
+            let moved = (size / way.max(least)).sqrt().min(one);
+            stress = stress + (sum - before.sum(weights) - turn.cross(sum)) * (moved * bending.c);
         }
         let torque = sum.cross(stress);
         let about_along = torque.dot(along) * per_width;

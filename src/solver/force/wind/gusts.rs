@@ -123,20 +123,30 @@ impl<'a> Noise<'a> {
         let mut velocity = self.wind.velocity;
         if gusts.strength > 0.0 {
             // A gust is a front that comes with the wind, one period of travel apart from the next.
-            let apart = (self.speed * gusts.period).max(1e-6);
-            let front = f64::from(place.dot(self.direction) / apart) - gusts_passed;
-            velocity *= 1.0 + gusts.strength * self.noise.get_noise_2d(front as f32, 0.5);
+            let apart = f64::from((self.speed * gusts.period).max(1e-6));
+            let front = place.as_dvec3().dot(self.direction.as_dvec3()) / apart - gusts_passed;
+            velocity *= 1.0 + gusts.strength * self.noise.get_noise_2d(wrapped(front), 0.5);
         }
         if gusts.turbulence > 0.0 {
             let eddies = (place.as_dvec3() - travelled) / f64::from(gusts.eddy_size.max(1e-3));
             // The slow drift along the third axis lets eddies change as they travel.
-            let p = eddies.as_vec3() + Vec3::Z * *gusts_passed as f32;
+            let p = Vec3::from(eddies.to_array().map(wrapped)) + Vec3::Z * wrapped(*gusts_passed);
             let eddy = |shift: f32| self.noise.get_noise_3d(p.x + shift, p.y, p.z);
             velocity +=
                 Vec3A::new(eddy(0.0), eddy(31.7), eddy(67.3)) * (self.speed * gusts.turbulence * NOISE_TO_DEVIATION);
         }
         velocity
     }
+}
+
+/// The noise begins anew after so many of its own lengths: farther from zero an `f32` has no room for what is between two of
+/// them, and much farther they can't be counted.
+const AGAIN: f64 = (1 << 20) as f64;
+
+/// A place of the noise. What is too far away to be one is at zero.
+fn wrapped(place: f64) -> f32 {
+    let place = place % AGAIN;
+    if place.is_nan() { 0.0 } else { place as f32 }
 }
 
 /// OpenSimplex2 noise spans -1..1 with a standard deviation of about 0.4.

@@ -1,0 +1,18 @@
+//! Random scenes through the public API: a few of the many that the lab's `chaos` runs.
+
+use chaos::{Options, run};
+
+#[path = "../../examples/lab/chaos/mod.rs"]
+mod chaos;
+
+#[test]
+fn random_scenes_stay_finite_and_panic_nowhere() {
+    let tally = run(&Options::of(0..60), |outcome| println!("{}", outcome.json()));
+    assert!(!tally.has_failed(), "{}", tally.json());
+}
+
+#[test]
+fn a_scene_follows_from_its_seed() {
+    let fingerprints = |threads| run(&Options { threads: Some(threads), ..Options::of(0..12) }, |_| ()).fingerprints();
+    assert_eq!(fingerprints(1), fingerprints(3));
+}
