@@ -66,7 +66,12 @@ pub fn particles_of_vertices(mesh: &Mesh, to_world: Mat3A) -> Result<Vec<Option<
 }
 
 /// Particles farther than this from the mesh's origin, m, are beyond what areas and volumes can be computed of.
-pub(crate) const FARTHEST: f32 = 1e7;
+const FARTHEST: f32 = 1e7;
+
+/// Whether a place (m) is finite, and near enough to its origin to compute with.
+pub(crate) fn is_near_enough(place: &Vec3) -> bool {
+    place.abs().cmple(Vec3::splat(FARTHEST)).all()
+}
 
 /// Welds a mesh and joins its particles with springs.
 fn particles_of(source: &SourceMesh, to_world: Mat3A) -> Result<(Welded, Topology), ClothError> {
@@ -76,7 +81,7 @@ fn particles_of(source: &SourceMesh, to_world: Mat3A) -> Result<(Welded, Topolog
         welded.vertex_of_particle.iter().map(place).collect()
     };
     let places = rest(&welded);
-    if let Some(particle) = places.iter().position(|place| !(place.abs().max_element() <= FARTHEST)) {
+    if let Some(particle) = places.iter().position(|place| !is_near_enough(place)) {
         let (vertex, distance) = (welded.vertex_of_particle[particle], places[particle].abs().max_element());
         return Err(ClothError::PositionTooFar { vertex, distance });
     }

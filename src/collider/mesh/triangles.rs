@@ -9,7 +9,7 @@ use parry3d::shape::{TriMesh, TriMeshFlags};
 
 use crate::collider::error::ColliderError;
 use crate::{
-    build::{FARTHEST, weld::weld},
+    build::{is_near_enough, weld::weld},
     error::ClothError,
     solver::TriangleMesh,
 };
@@ -59,7 +59,7 @@ pub(crate) fn sheet(points: &[Vec3], triangles: &[[u32; 3]], scale: Mat3A) -> Re
 pub(super) fn places(points: &[Vec3], numbers: &[u32], scale: Mat3A) -> Result<Vec<Vec3>, ColliderError> {
     // Adding zero makes -0 the same as 0.
     let places: Vec<Vec3> = numbers.iter().map(|&i| scale * points[i as usize] + Vec3::ZERO).collect();
-    let Some(far) = places.iter().position(|place| !(place.abs().max_element() <= FARTHEST)) else { return Ok(places) };
+    let Some(far) = places.iter().position(|place| !is_near_enough(place)) else { return Ok(places) };
     if !places[far].is_finite() {
         return Err(ColliderError::NoSize);
     }
