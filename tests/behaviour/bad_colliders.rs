@@ -70,6 +70,22 @@ fn meshes_without_a_surface_are_refused() {
 }
 
 #[test]
+fn differences_that_do_not_fit_into_an_f32_are_none() {
+    let mut quiet = Quiet::new();
+    let tiny = bare(PrimitiveTopology::TriangleList, &[[0.0; 3], [1e-37, 0.0, 0.0], [0.0, 1e-37, 0.0]]);
+    let entity = spawn(&mut quiet.app, tiny, ClothCollider::mesh());
+    assert_refused(&mut quiet, entity, &["no triangle with an area"]);
+    // One over the other, nearer than any number tells.
+    let places = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]];
+    let places: Vec<[f32; 3]> = [0.0, 1e-39, 2e-39].iter().flat_map(|&z| places.map(|[x, y]| [x, y, z])).collect();
+    let stacked = bare(PrimitiveTopology::TriangleList, &places);
+    get_mut::<ClothCollider>(&mut quiet.app, entity).shape = ClothCollider::from(Sphere::new(0.1)).shape;
+    spawn(&mut quiet.app, stacked, ClothCollider::mesh());
+    assert_eq!(quiet.run(3), Vec::<String>::new());
+    assert_eq!(obstacle_count(&quiet), 2);
+}
+
+#[test]
 fn meshes_that_are_too_far_away_to_compute_with_are_refused() {
     for collider in [ClothCollider::mesh(), ClothCollider::convex_hull()] {
         let mesh = Mesh::from(Cuboid::default()).translated_by(Vec3::X * 1e30);

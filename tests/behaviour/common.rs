@@ -114,8 +114,13 @@ pub fn pinned(app: &App, entity: Entity) -> Vec<usize> {
     (0..vertices).filter(|&vertex| state.particle_of_vertex(vertex).is_some_and(|p| state.is_pinned(p))).collect()
 }
 
-/// By how much the sides of a cloth's triangles are longer or shorter than at rest, no unit: the largest of all.
+/// By how much a side of a cloth's triangles is longer or shorter than at rest at most, no unit.
 pub fn largest_strain(app: &App, entity: Entity) -> f32 {
+    strains(app, entity).into_iter().fold(0.0, f32::max)
+}
+
+/// By how much each side of each of a cloth's triangles is longer or shorter than at rest, no unit.
+pub fn strains(app: &App, entity: Entity) -> Vec<f32> {
     let state = state(app, entity);
     let (places, rest): (Vec<Vec3>, _) = (state.positions_from_origin().collect(), &state.topology().rest);
     let sides = state.triangles().iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
@@ -123,7 +128,7 @@ pub fn largest_strain(app: &App, entity: Entity) -> f32 {
         let length = |places: &[Vec3]| places[a as usize].distance(places[b as usize]);
         (length(&places) / length(rest) - 1.0).abs()
     };
-    sides.map(strain).fold(0.0, f32::max)
+    sides.map(strain).collect()
 }
 
 /// Moves inner vertices of a flat grid in its own plane by up to this share of a cell: triangles that form no rows and

@@ -55,5 +55,6 @@ mod skins;
 mod small_cloth;
 mod stretch;
 mod teleports;
+mod uneven_flags;
 mod violence;
 mod winds;

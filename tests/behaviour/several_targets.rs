@@ -43,8 +43,8 @@ fn moved(at: Transform, time: f32) -> Transform {
     Transform { translation: at.translation + Vec3::X * 6.0 * time, rotation: turned * at.rotation, ..at }
 }
 
-/// How far pinned corners are drawn from their bones, and by how much the drawn cloth changes from frame to frame as seen
-/// from the first bone, m, at so many frames a second; both at most.
+/// How far pinned corners are drawn from their bones, and by how much the drawn cloth moves otherwise from one frame to the
+/// next, as seen from the first bone, m, at so many frames a second; both at most.
 fn gaps(mesh: Mesh, have_parent: bool, rate: f64) -> [f32; 2] {
     let mut app = headless();
     set_rates(&mut app, 1.0 / rate, 1.0 / 64.0);
@@ -57,7 +57,7 @@ fn gaps(mesh: Mesh, have_parent: bool, rate: f64) -> [f32; 2] {
         to_bone.transform_point3(place(&app, cape, ENDS[i]))
     });
     let (mut gap, mut change) = (0.0_f32, 0.0_f32);
-    let mut before: Option<Vec<Vec3>> = None;
+    let mut middles: Vec<Vec3> = Vec::new();
     for frame in 0..seconds(1.0) {
         for (&mover, &start) in movers.iter().zip(&starts) {
             *get_mut::<Transform>(&mut app, mover) = moved(start, frame as f32 / rate as f32);
@@ -70,13 +70,11 @@ fn gaps(mesh: Mesh, have_parent: bool, rate: f64) -> [f32; 2] {
             let wanted = get::<GlobalTransform>(&app, bones[i]).transform_point(offsets[i]);
             gap = gap.max(shown[ENDS[i] as usize].distance(wanted));
         }
+        // The middle of the top edge.
         let to_bone = get::<GlobalTransform>(&app, bones[0]).affine().inverse();
-        let seen: Vec<Vec3> = shown.into_iter().map(|place| to_bone.transform_point3(place)).collect();
-        if let Some(before) = before.replace(seen.clone())
-            && frame > seconds(0.5)
-        {
-            // The middle of the top edge, once it has caught up: what is below swings.
-            change = change.max(before[6].distance(seen[6]));
+        middles.push(to_bone.transform_point3(shown[6]));
+        if let [.., before, middle, after] = middles[..] {
+            change = change.max(before.distance(2.0 * middle - after));
         }
     }
     [gap, change]
@@ -102,9 +100,10 @@ fn pinned_vertices_are_drawn_at_entities_that_go_their_own_ways() {
 
 #[test]
 fn what_lies_between_follows_smoothly() {
-    // In a frame of 1/144 s, 6 m/s are 42 mm: a cloth that isn't carried would tremble by as much.
+    // In a frame of 1/144 s, 6 m/s are 42 mm: a cloth that isn't carried would stay behind by as much in some frames, and catch
+    // up with its bones in others.
     let [_, change] = gaps(grid().into(), true, 144.0);
-    assert!(change < 0.01, "{change} m");
+    assert!(change < 0.02, "{change} m");
 }
 
 #[test]

@@ -9,5 +9,6 @@ mod engine;
 
 mod bodies;
 mod filters;
+mod jumps;
 mod missing_engines;
 mod places;

@@ -55,10 +55,18 @@ pub(crate) fn sheet(points: &[Vec3], triangles: &[[u32; 3]], scale: Mat3A) -> Re
     Ok(Made { mesh: with_area(&points, triangles, false)?, origin })
 }
 
+/// A coordinate of less than this, m, is 0: the reciprocal of what is much smaller doesn't fit into an f32, and parry's trees
+/// take it.
+const SMALLEST: f32 = 1e-20;
+
 /// The places of the points with these `numbers`, all of them finite and near enough to compute with.
 pub(super) fn places(points: &[Vec3], numbers: &[u32], scale: Mat3A) -> Result<Vec<Vec3>, ColliderError> {
-    // Adding zero makes -0 the same as 0.
-    let places: Vec<Vec3> = numbers.iter().map(|&i| scale * points[i as usize] + Vec3::ZERO).collect();
+    let place = |&i: &u32| {
+        let place = scale * points[i as usize];
+        // It also makes -0 the same as 0.
+        Vec3::select(place.abs().cmplt(Vec3::splat(SMALLEST)), Vec3::ZERO, place)
+    };
+    let places: Vec<Vec3> = numbers.iter().map(place).collect();
     let Some(far) = places.iter().position(|place| !is_near_enough(place)) else { return Ok(places) };
     if !places[far].is_finite() {
         return Err(ColliderError::NoSize);
