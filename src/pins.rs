@@ -28,8 +28,8 @@ pub const ATTRIBUTE_PIN: MeshVertexAttribute = MeshVertexAttribute::new("Pin", 0
 /// Vertices at one place are one particle: pinning one of them pins all.
 ///
 /// Targets move the cloth best in `FixedUpdate` or any schedule that runs once a step; moved once a frame they pull in
-/// jolts where a frame has several steps or none. What is drawn stays on a target that all pins share, whenever that
-/// moves.
+/// jolts where a frame has several steps or none. What is drawn stays at all targets, whenever they move; what lies between
+/// several of them goes along by its distances along the cloth.
 ///
 /// ```
 /// # use bevy_drape::prelude::*;
