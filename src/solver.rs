@@ -17,6 +17,7 @@ pub mod topology;
 pub mod weave;
 
 mod crew;
+mod imperfection;
 mod integrate;
 mod lanes;
 mod order;

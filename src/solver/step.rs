@@ -15,6 +15,7 @@ use super::{
     effort::Care,
     explicit::{self, Stability},
     force::wind,
+    imperfection,
     integrate::{self, Motion, SpeedLimit},
     share,
 };
@@ -216,6 +217,7 @@ impl<'a> Running<'a> {
         let Plan { dt, is_near, longest_edge, levels, stability, .. } = plan;
         let h = dt / substeps as f32;
         let helpers = helpers(topology, ctx);
+        imperfection::seed(particles, topology, ctx);
         let Loaded { is_pushed, has_moved } = load(particles, topology, ctx, h, helpers, scratch);
         grab::take_up(&mut scratch.lanes, ctx.grabs);
         scratch.near.begin();

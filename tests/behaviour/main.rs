@@ -29,6 +29,7 @@ mod floating_origin;
 mod forces;
 mod grabs;
 mod gravity;
+mod jerks;
 mod large_meshes;
 mod late_mesh;
 #[cfg(feature = "mesh_colliders")]
