@@ -7,7 +7,8 @@ use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothSprings, Fabric},
     solver::{
-        Anchor, Effort, Elasticity, Material, Method, Particles, Scratch, SelfCollision, StepContext, Topology, step,
+        Elasticity, Material, Method, Particles, PinMotion, Scratch, SelfCollision, StepContext, SubstepPolicy,
+        Topology, step,
     },
 };
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -37,16 +38,16 @@ fn hang(criterion: &mut Criterion) {
         let topology = topology(n);
         let rest: Vec<Vec3A> = topology.rest.iter().copied().map(Vec3A::from).collect();
         let pins = [0, n - 1];
-        let anchors = pins.map(|particle| {
+        let pin_motions = pins.map(|particle| {
             let place = rest[particle as usize];
-            Anchor { particle, start: place, end: place }
+            PinMotion { particle, start: place, end: place }
         });
         let mut particles = Particles::at_rest(rest, &topology, &material);
         particles.set_masses(&topology, &material, |i| pins.contains(&(i as u32)));
         let tethers = build::tethers(&topology, &pins);
         let effort = match method {
-            Method::Strands => Effort::to_hold(0.005, &topology),
-            Method::Xpbd | Method::Explicit => Effort::fixed(8, Vec::new()),
+            Method::Strands => SubstepPolicy::to_hold(0.005, &topology),
+            Method::Xpbd | Method::Explicit => SubstepPolicy::fixed(8, Vec::new()),
         };
         let ctx = StepContext {
             dt: 1.0 / 60.0,
@@ -55,7 +56,7 @@ fn hang(criterion: &mut Criterion) {
             max_substeps: 512,
             material,
             gravity: Vec3A::NEG_Y * 9.81,
-            anchors: &anchors,
+            pin_motions: &pin_motions,
             mounts: &[],
             mounted: &[],
             grabs: &[],

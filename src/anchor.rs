@@ -6,13 +6,13 @@ use bevy::{
 };
 
 use crate::{
-    build::{Blending, Tying},
+    build::{Blending, TetherBuild},
     cloth::ClothStatus,
     draw::mesh::ClothMesh,
     origin,
     pins::{PinTarget, Pins, targets_by_particle},
     pose::{Poses, is_invertible},
-    solver::Anchor,
+    solver::PinMotion,
     state::{ClothState, Work},
     teleport::Jump,
 };
@@ -79,7 +79,7 @@ pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity,
     let particles: Vec<u32> = pins.iter().map(|pin| pin.particle).collect();
     state.keep_tethers(|pin| particles.binary_search(&pin).is_ok());
     let tied = particles.iter().copied().filter(|particle| !state.mounted.contains(particle));
-    state.tying = Some(Box::new(Tying::begin(tied.collect())));
+    state.tying = Some(Box::new(TetherBuild::begin(tied.collect())));
     state.blend_weights = None;
     state.blending = (carriers.len() > 1).then(|| {
         let held = pins.iter().map(|pin| (pin.particle, pin.carrier));
@@ -176,8 +176,8 @@ fn take_asked_jump(state: &mut ClothState, pose: Affine3A) -> Option<Jump> {
 
 fn plan_anchors(state: &mut ClothState) {
     let origin = Vec3A::from(state.origin);
-    let Work { anchors, mounts, mount_owners, mounted, .. } = &mut state.work;
-    anchors.clear();
+    let Work { pin_motions, mounts, mount_owners, mounted, .. } = &mut state.work;
+    pin_motions.clear();
     // Bridges to physics engines fill these.
     mounts.clear();
     mount_owners.clear();
@@ -199,7 +199,7 @@ fn plan_anchors(state: &mut ClothState) {
         if carrier.has_jumped() {
             *place = end;
         }
-        anchors.push(Anchor { particle: pin.particle, start: *place, end });
+        pin_motions.push(PinMotion { particle: pin.particle, start: *place, end });
     }
 }
 

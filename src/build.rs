@@ -6,7 +6,7 @@ use crate::{error::ClothError, solver::Topology};
 
 mod bends;
 mod blend;
-mod braids;
+mod strand_packs;
 mod candidate;
 mod cells;
 mod chart;
@@ -34,7 +34,7 @@ mod topology;
 pub(crate) mod weld;
 
 pub(crate) use blend::{BlendWeights, Blending};
-pub(crate) use geodesic::Tying;
+pub(crate) use geodesic::TetherBuild;
 pub use geodesic::{grab_tethers, tethers};
 
 use source::SourceMesh;

@@ -6,7 +6,7 @@ use crate::{
     error::{ClothError, check},
     fabric::Fabric,
     pins::Pins,
-    solver::{Effort, LevelPass, Method, SelfCollision, Topology},
+    solver::{SubstepPolicy, LevelPass, Method, SelfCollision, Topology},
     state::ClothState,
 };
 
@@ -136,16 +136,16 @@ const XPBD_SUBSTEPS: u32 = 8;
 
 impl Cloth {
     /// Substeps and levels for a mesh.
-    pub(crate) fn effort(&self, topology: &Topology) -> Effort {
+    pub(crate) fn effort(&self, topology: &Topology) -> SubstepPolicy {
         let is_woven = self.solver == ClothSolver::Strands;
         let mut effort = match self.substeps {
-            Some(substeps) if is_woven => Effort::fixed(substeps, Effort::levels_for(substeps, topology)),
-            None if is_woven => Effort::to_hold(self.max_strain, topology),
-            substeps => Effort::fixed(substeps.unwrap_or(XPBD_SUBSTEPS), Vec::new()),
+            Some(substeps) if is_woven => SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, topology)),
+            None if is_woven => SubstepPolicy::to_hold(self.max_strain, topology),
+            substeps => SubstepPolicy::fixed(substeps.unwrap_or(XPBD_SUBSTEPS), Vec::new()),
         };
         if let Some(levels) = &self.levels {
             effort.levels.clone_from(levels);
-            effort.careful_levels.clone_from(levels);
+            effort.contact_levels.clone_from(levels);
         }
         effort
     }

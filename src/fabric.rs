@@ -2,7 +2,7 @@
 
 mod begun;
 pub(crate) mod file;
-pub(crate) mod fineness;
+pub(crate) mod resolution;
 pub(crate) mod handle;
 pub(crate) mod loader;
 mod presets;

@@ -218,7 +218,7 @@ pub(crate) fn lead_grabs(mut cloths: Query<(&mut ClothState, &ClothStatus)>, tim
 }
 
 /// Tells of grabs that have begun or ended.
-pub(crate) fn tell_of_grabs(mut commands: Commands, mut cloths: Query<(Entity, &mut ClothState)>) {
+pub(crate) fn send_grab_events(mut commands: Commands, mut cloths: Query<(Entity, &mut ClothState)>) {
     for (entity, mut state) in &mut cloths {
         let state = state.bypass_change_detection();
         if state.grabs.held.iter().all(|held| held.is_told) && state.grabs.ended.is_empty() {

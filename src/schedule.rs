@@ -151,7 +151,7 @@ impl Plugin for ClothPlugin {
             )
             .add_systems(
                 PostUpdate,
-                (grab::tell_of_grabs, draw::mesh::shape_cloths, draw::mesh::write_meshes)
+                (grab::send_grab_events, draw::mesh::shape_cloths, draw::mesh::write_meshes)
                     .chain()
                     .in_set(ClothSystems::Draw),
             )

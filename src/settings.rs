@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use crate::{
     anchor,
     cloth::{Cloth, ClothStatus},
-    fabric::{ClothSprings, Fabric, fineness},
+    fabric::{ClothSprings, Fabric, resolution},
     margin,
     state::ClothState,
 };
@@ -30,7 +30,7 @@ pub(crate) fn update_settings(
         let material = fabric.material_with(springs).map(|material| {
             state.material = Some(material);
             anchor::set_masses(&mut state);
-            fineness::warn_if_coarse(entity, fabric, springs, &mut state);
+            resolution::warn_if_coarse(entity, fabric, springs, &mut state);
         });
         let refusals: Vec<_> = settings.err().into_iter().chain(material.err()).collect();
         if !state.said.refused {

@@ -24,9 +24,9 @@ use crate::{
 
 /// Working memory for as many cloths as are stepped at a time, which is far less than for all.
 #[derive(Default)]
-pub(crate) struct Workshop(Mutex<Vec<Scratch>>);
+pub(crate) struct ScratchPool(Mutex<Vec<Scratch>>);
 
-impl Workshop {
+impl ScratchPool {
     /// Lends working memory. The latest that was handed back comes first: it may still be in the processor's cache.
     fn take(&self) -> Scratch {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
@@ -52,7 +52,7 @@ pub(crate) fn step_cloths(
     run: Res<ClothRun>,
     time: Res<Time>,
     surroundings: Surroundings,
-    workshop: Local<Workshop>,
+    scratch_pool: Local<ScratchPool>,
     _main_thread: NonSendMarker,
 ) {
     let gravity = surroundings.gravity.0;
@@ -67,7 +67,7 @@ pub(crate) fn step_cloths(
     let pool = parallel::pool(run.parallel);
     parallel::for_each(meeting::group(ready, time.delta_secs()), run.parallel, |mut group| {
         let mut states: Vec<&mut ClothState> = group.iter_mut().map(|(_, state)| &mut **state).collect();
-        step_group(&mut states, &time, gravity, &surroundings, pool, &workshop);
+        step_group(&mut states, &time, gravity, &surroundings, pool, &scratch_pool);
     });
 }
 
@@ -78,7 +78,7 @@ fn step_group(
     gravity: Vec3,
     surroundings: &Surroundings,
     pool: Option<&TaskPool>,
-    workshop: &Workshop,
+    scratch_pool: &ScratchPool,
 ) {
     for state in &mut *states {
         state.is_taken_back = false;
@@ -88,7 +88,7 @@ fn step_group(
     if time.delta_secs() <= 0.0 {
         return;
     }
-    let mut scratches: Vec<Scratch> = states.iter().map(|_| workshop.take()).collect();
+    let mut scratches: Vec<Scratch> = states.iter().map(|_| scratch_pool.take()).collect();
     let begun = Instant::now();
     let mut parts: Vec<Parts> = states
         .iter_mut()
@@ -113,7 +113,7 @@ fn step_group(
         take_pushes(&mut state.work, scratch);
         end_step(state, report);
     }
-    scratches.into_iter().rev().for_each(|scratch| workshop.give_back(scratch));
+    scratches.into_iter().rev().for_each(|scratch| scratch_pool.give_back(scratch));
 }
 
 /// Keeps what bodies have been given.
@@ -147,7 +147,7 @@ impl<'a> Parts<'a> {
         state.step_start.clone_from(&state.particles.position);
         let margin = state.collision_margin();
         let ClothState { particles, topology, origin, settings, effort, work, tethers, .. } = state;
-        let Work { anchors, mounts, mounted, grabs, obstacles: near, owners, winds: felt, jump, .. } = work;
+        let Work { pin_motions, mounts, mounted, grabs, obstacles: near, owners, winds: felt, jump, .. } = work;
         surroundings.obstacles.around(*origin, settings.collision_mask, *jump, near, owners);
         surroundings.winds.around(*origin, felt);
         let ctx = StepContext {
@@ -157,7 +157,7 @@ impl<'a> Parts<'a> {
             max_substeps: settings.max_substeps,
             material,
             gravity: (gravity * settings.gravity_scale).into(),
-            anchors,
+            pin_motions,
             mounts,
             mounted,
             grabs,

@@ -30,28 +30,28 @@ pub mod explicit;
 pub mod force;
 pub mod measure;
 
-pub use braid::Braid;
+pub use braid::StrandPack;
 pub use constraint::{
     grab::{Grab, GrabTether},
-    mount::{Mount, Mounted},
+    mount::{BodyAttachment, AttachedPin},
     tether::{Tether, Tethers},
 };
 pub use contact::{
-    Body, Obstacle, Push, Shape, Stray,
+    Body, Obstacle, BodyImpulse, Shape, BodyDisplacement,
     mesh::{MeshShape, TriangleMesh},
     solid::{Ellipsoid, Solid, TaperedCapsule},
 };
-pub use context::{Anchor, Method, SelfCollision, StepContext, StepReport};
-pub use effort::Effort;
+pub use context::{PinMotion, Method, SelfCollision, StepContext, StepReport};
+pub use effort::SubstepPolicy;
 pub use force::wind::{WindRegion, WindSource};
 pub(crate) use lanes::Lanes;
-pub use lattice::{Lattice, Threads};
-pub use level::{Between, Level, LevelPass, Spread, Transfer};
+pub use lattice::{Lattice, StrandSet};
+pub use level::{LinearWeights, Level, LevelPass, Prolongation, TransferOperator};
 pub use material::{Elasticity, Material, Moduli, SpringConstants, SpringLaw};
 pub use measure::{Energy, Strain};
 pub use particles::Particles;
 pub use scratch::Scratch;
-pub use simd::Instructions;
+pub use simd::SimdLevel;
 pub use step::{MAX_TIME_STEP, Member, step, step_together};
 pub use topology::{Bend, BendBatch, Face, Grain, Spring, SpringBatch, SpringKind, Topology};
-pub use weave::Weave;
+pub use weave::MeshStructure;

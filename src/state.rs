@@ -10,14 +10,14 @@ use bevy::{
 
 use crate::{
     anchor::{Carrier, HeldPin},
-    build::{BlendWeights, Blending, Tying, plan::Awaited, weld::NO_PARTICLE},
+    build::{BlendWeights, Blending, TetherBuild, plan::PendingBuild, weld::NO_PARTICLE},
     cloth::{Cloth, ClothSolver},
     draw::shading::particle_normals,
     grab::Grabs,
     rest_scale::RestScale,
     solver::{
-        self, Anchor, Effort, Energy, Grab, Material, Mount, Mounted, Obstacle, Particles, Push, StepReport, Strain,
-        Stray, Tether, Tethers, Topology, Weave, WindSource,
+        self, PinMotion, SubstepPolicy, Energy, Grab, Material, BodyAttachment, AttachedPin, Obstacle, Particles, BodyImpulse, StepReport, Strain,
+        BodyDisplacement, Tether, Tethers, Topology, MeshStructure, WindSource,
     },
     teleport::Jump,
 };
@@ -45,7 +45,7 @@ pub struct ClothState {
     /// The settings in force: the latest that were valid.
     pub(crate) settings: Cloth,
     /// Substeps and levels that follow from the settings.
-    pub(crate) effort: Effort,
+    pub(crate) effort: SubstepPolicy,
     /// The constants in force: the latest that were valid.
     pub(crate) material: Option<Material>,
     /// How wide it is at rest, m.
@@ -57,7 +57,7 @@ pub struct ClothState {
     /// Tethers to the pins.
     pub(crate) tethers: Tethers,
     /// Tethers that are being worked out anew.
-    pub(crate) tying: Option<Box<Tying>>,
+    pub(crate) tying: Option<Box<TetherBuild>>,
     /// Points that are held by hand.
     pub(crate) grabs: Grabs,
     /// The scale that the cloth was built at, and what it has become since.
@@ -83,9 +83,9 @@ pub struct ClothState {
     /// What has been asked for and is done at the next occasion.
     pub(crate) requests: Requests,
     /// What it waits for, or the cloth that takes its place.
-    pub(crate) awaited: Option<Awaited>,
+    pub(crate) awaited: Option<PendingBuild>,
     /// What has been said once and needn't be said again.
-    pub(crate) said: Said,
+    pub(crate) said: Warned,
     /// Buffers of a step.
     pub(crate) work: Work,
 }
@@ -103,7 +103,7 @@ pub(crate) struct Requests {
 
 /// Which warnings have been given.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Said {
+pub(crate) struct Warned {
     /// The explicit solver has too few substeps.
     pub softened: bool,
     /// The state became non-finite.
@@ -126,23 +126,23 @@ pub(crate) struct Said {
 pub(crate) struct Given {
     /// The body, or one of its colliders.
     pub to: Entity,
-    pub push: Push,
+    pub push: BodyImpulse,
     /// How far it has come off its path by that.
-    pub stray: Stray,
+    pub stray: BodyDisplacement,
 }
 
 /// Buffers that a step fills anew.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Work {
-    pub anchors: Vec<Anchor>,
+    pub pin_motions: Vec<PinMotion>,
     pub grabs: Vec<Grab>,
     pub obstacles: Vec<Obstacle>,
     /// Whose obstacle each is.
     pub owners: Vec<Entity>,
     /// Bodies that pins are fixed to, whose they are, and which anchors are on which.
-    pub mounts: Vec<Mount>,
+    pub mounts: Vec<BodyAttachment>,
     pub mount_owners: Vec<Entity>,
-    pub mounted: Vec<Mounted>,
+    pub mounted: Vec<AttachedPin>,
     /// What the bodies among all these have been given.
     pub given: Vec<Given>,
     pub winds: Vec<WindSource>,
@@ -216,8 +216,8 @@ impl ClothState {
 
     /// What the cloth's mesh was found to be, by which [`ClothSolver::Strands`] goes: rows and columns, threads, or
     /// springs one by one. None until the cloth is ready.
-    pub fn weave(&self) -> Option<Weave> {
-        (!self.particles.is_empty()).then(|| self.topology.weave())
+    pub fn structure(&self) -> Option<MeshStructure> {
+        (!self.particles.is_empty()).then(|| self.topology.structure())
     }
 
     /// What the latest step did: substeps, contacts. None before the first.

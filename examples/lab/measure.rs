@@ -76,7 +76,7 @@ fn line(name: &str, options: &Options, mesh: &MeshSource, scene: &Scene, substep
         "particles": cloths.iter().map(|cloth| cloth.particles.len()).sum::<usize>(),
         "springs": cloths.iter().map(|cloth| cloth.topology.springs.len()).sum::<usize>(),
         "substeps": substeps,
-        "weave": cloths[0].topology.weave().to_string(),
+        "weave": cloths[0].topology.structure().to_string(),
         "levels": levels(&cloths[0]),
         "build_ms": cloths.iter().map(|cloth| cloth.build_ms).sum::<f64>(),
         "tethers_ms": cloths.iter().map(|cloth| cloth.tethers_ms).sum::<f64>(),

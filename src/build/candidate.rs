@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use super::{
-    plan::{Awaited, Plan, PlanCache, Ties, is_large},
+    plan::{PendingBuild, Plan, PlanCache, TetherKey, is_large},
     system::MeshNews,
 };
 use crate::{
@@ -22,13 +22,13 @@ use crate::{
         skin::{Lost, copy_without_skin},
     },
     error::ClothError,
-    fabric::{ClothSprings, Fabric, fineness},
+    fabric::{ClothSprings, Fabric, resolution},
     margin, origin,
     pins::{PinTarget, Pins, targets_by_particle},
     pose::{Poses, is_invertible},
     rest_scale::RestScale,
     solver::{Material, Particles, Tethers},
-    state::{ClothState, Requests, Said},
+    state::{ClothState, Requests, Warned},
     teleport::Jump,
 };
 
@@ -159,13 +159,13 @@ impl CandidateItem<'_, '_> {
     /// What the cloth waits for, with `to_world` as its rotation and scale by now.
     ///
     /// A cloth that turns without an end is made as it stood at first: by the time that it is done, it has turned on.
-    fn awaited(&mut self, to_world: Mat3A) -> Awaited {
+    fn awaited(&mut self, to_world: Mat3A) -> PendingBuild {
         if let Some(awaited) = &self.state.awaited
             && is_turned(awaited.to_world, to_world)
         {
             return awaited.clone();
         }
-        let awaited = Awaited { to_world, ties: None };
+        let awaited = PendingBuild { to_world, ties: None };
         self.state.awaited = Some(awaited.clone());
         awaited
     }
@@ -183,16 +183,16 @@ impl CandidateItem<'_, '_> {
     /// being made.
     fn tied(
         &mut self,
-        awaited: Awaited,
+        awaited: PendingBuild,
         plan: &Plan,
         targets: &[PinTarget],
         cache: &mut PlanCache,
-    ) -> Option<(Ties, Tethers)> {
+    ) -> Option<(TetherKey, Tethers)> {
         let begun = awaited.ties.filter(|ties| Arc::ptr_eq(&ties.topology, &plan.topology));
-        let ties = begun.unwrap_or_else(|| Ties { topology: plan.topology.clone(), pins: pinned(targets) });
+        let ties = begun.unwrap_or_else(|| TetherKey { topology: plan.topology.clone(), pins: pinned(targets) });
         let tethers = if ties.pins.is_empty() { Some(Tethers::default()) } else { cache.tethers(&ties) };
         if tethers.is_none() {
-            self.state.awaited = Some(Awaited { ties: Some(ties.clone()), ..awaited });
+            self.state.awaited = Some(PendingBuild { ties: Some(ties.clone()), ..awaited });
         }
         tethers.map(|tethers| (ties, tethers))
     }
@@ -225,7 +225,7 @@ impl CandidateItem<'_, '_> {
     }
 
     /// The mesh that is drawn. Says once what of the user's it doesn't follow.
-    fn copy_of(&self, mesh: &Mesh, said: &mut Said) -> Mesh {
+    fn copy_of(&self, mesh: &Mesh, said: &mut Warned) -> Mesh {
         let (copy, Lost { skin, morph_targets }) = copy_without_skin(mesh);
         if skin && !core::mem::replace(&mut said.skin, true) {
             warn!("cloth {} is simulated and drawn from its bind pose: its skin isn't followed yet", self.entity);
@@ -263,7 +263,7 @@ impl CandidateItem<'_, '_> {
         let requests = Requests { reset_from, ..default() };
         *self.state = ClothState { grabs, requests, ..built.state };
         *self.status = ClothStatus::Ready;
-        fineness::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &mut self.state);
+        resolution::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &mut self.state);
         margin::warn_if_too_large(entity, &mut self.state);
         if self.mesh.0 != drawn {
             self.mesh.0 = drawn.clone();
@@ -293,7 +293,7 @@ impl CandidateItem<'_, '_> {
 
 /// Gives a cloth the `tethers` that tie `ties`. Where its pins have changed meanwhile, those to new ones are worked out
 /// while it runs.
-fn tie(state: &mut ClothState, targets: &[PinTarget], ties: &Ties, mut tethers: Tethers) {
+fn tie(state: &mut ClothState, targets: &[PinTarget], ties: &TetherKey, mut tethers: Tethers) {
     state.mounted.clear();
     if ties.pins == pinned(targets) {
         state.tying = None;

@@ -34,20 +34,20 @@ const TELLING_APART: f32 = 0.8;
 ///
 /// A tether is as long as the cloth between its ends; a particle that no pin can reach has none.
 pub fn tethers(topology: &Topology, pins: &[u32]) -> Tethers {
-    let mut tying = Tying::begin(pins.to_vec());
+    let mut tying = TetherBuild::begin(pins.to_vec());
     tying.go_on(topology, usize::MAX);
     tying.finish(topology)
 }
 
 /// Tethers that are being worked out, a part at a time.
 #[derive(Clone, Debug)]
-pub(crate) struct Tying {
+pub(crate) struct TetherBuild {
     pins: Vec<u32>,
     /// None before the first part.
     search: Option<Search>,
 }
 
-impl Tying {
+impl TetherBuild {
     /// Begins at `pins`.
     pub fn begin(pins: Vec<u32>) -> Self {
         Self { pins, search: None }

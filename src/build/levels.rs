@@ -2,7 +2,7 @@
 
 use crate::solver::{
     Lattice, Level,
-    level::{Spread, Transfer},
+    level::{Prolongation, TransferOperator},
 };
 
 mod chart;
@@ -29,7 +29,7 @@ fn by_strides(longer: usize, level: impl Fn(usize) -> Level) -> Vec<Level> {
     for i in 1..levels.len() {
         let [coarser, finer] = [&levels[i - 1], &levels[i]];
         let nodes = [&*coarser.rows, &*coarser.columns];
-        levels[i].from_coarser = Some(Spread::new(nodes, coarser.ring, [&finer.rows, &finer.columns]));
+        levels[i].from_coarser = Some(Prolongation::new(nodes, coarser.ring, [&finer.rows, &finer.columns]));
     }
     levels
 }
@@ -59,8 +59,8 @@ fn level(cloth: &Lattice, stride: usize) -> Level {
     let ring = closed.then_some(cloth.columns as f32);
     let numbers = |count: usize| -> Vec<f32> { (0..count).map(|i| i as f32).collect() };
     let particles = [numbers(cloth.rows), numbers(cloth.columns)];
-    let spread = Spread::new([&rows, &columns], ring, particles.each_ref().map(Vec::as_slice));
-    let transfer = Transfer::Lattice { slots, spread };
+    let spread = Prolongation::new([&rows, &columns], ring, particles.each_ref().map(Vec::as_slice));
+    let transfer = TransferOperator::Lattice { slots, spread };
     Level { stride: stride as u32, lattice, rows, columns, ring, share, from_coarser: None, transfer }
 }
 

@@ -41,7 +41,7 @@ pub(crate) struct PlanCache {
     known: KnownPlans,
     /// Plans by their mesh, and the bits of the rotation and scale that it stands in.
     plans: Jobs<(AssetId<Mesh>, [u32; 9]), Made>,
-    tethers: Jobs<Ties, Tethers>,
+    tethers: Jobs<TetherKey, Tethers>,
 }
 
 /// The plans that are in use.
@@ -57,21 +57,21 @@ struct Made {
 
 /// What a cloth waits for whose mesh is large.
 #[derive(Clone, Debug)]
-pub(crate) struct Awaited {
+pub(crate) struct PendingBuild {
     /// The rotation and scale that its plan is made for.
     pub to_world: Mat3A,
     /// What its tethers tie, once it has a plan.
-    pub ties: Option<Ties>,
+    pub ties: Option<TetherKey>,
 }
 
 /// What tethers tie.
 #[derive(Clone, Debug)]
-pub(crate) struct Ties {
+pub(crate) struct TetherKey {
     pub topology: Arc<Topology>,
     pub pins: Arc<[u32]>,
 }
 
-impl PartialEq for Ties {
+impl PartialEq for TetherKey {
     /// Of the very same topology.
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.topology, &other.topology) && self.pins == other.pins
@@ -88,7 +88,7 @@ impl PlanCache {
     }
 
     /// Whether anything is being worked on that a cloth waits for. What is done already is kept for it.
-    pub(super) fn is_working_on(&mut self, id: AssetId<Mesh>, awaited: &Awaited) -> bool {
+    pub(super) fn is_working_on(&mut self, id: AssetId<Mesh>, awaited: &PendingBuild) -> bool {
         let plan = self.plans.is_running(&(id, bits(awaited.to_world)));
         let tethers = awaited.ties.as_ref().is_some_and(|ties| self.tethers.is_running(ties));
         plan || tethers
@@ -119,7 +119,7 @@ impl PlanCache {
     }
 
     /// The tethers that tie what is to be tied. None while they are being made, as in [`plan`](Self::plan).
-    pub(super) fn tethers(&mut self, ties: &Ties) -> Option<Tethers> {
+    pub(super) fn tethers(&mut self, ties: &TetherKey) -> Option<Tethers> {
         let work = || {
             let ties = ties.clone();
             async move { tethers(&ties.topology, &ties.pins) }

@@ -13,7 +13,7 @@ use bevy::prelude::*;
 use super::lattice::Rectangle;
 use crate::solver::{
     Bend,
-    lattice::Curl,
+    lattice::RestCurvature,
     simd::{LANES, Lane},
 };
 
@@ -79,7 +79,7 @@ impl Plate {
     }
 
     /// What bends are at rest, for the lattice. None where all is flat.
-    pub fn curl(&self) -> Option<Curl> {
+    pub fn curl(&self) -> Option<RestCurvature> {
         if self.bends().all(|(bend, _)| bend.rest == [0.0; 3]) {
             return None;
         }
@@ -98,7 +98,7 @@ impl Plate {
             blocks.map(block).collect::<Vec<_>>()
         };
         let is_inner = |(_, column): (usize, usize)| column > 0 && column + 1 < self.columns;
-        let curl = Curl {
+        let curl = RestCurvature {
             along_rows: of(&|at| self.along_row(at).filter(|_| is_inner(at)), &|(row, _)| row + 1 == self.rows),
             along_columns: of(&|at| self.along_column(at), &|(_, column)| !self.closed && column + 1 == self.columns),
             twist: of(&|at| self.twist(at).filter(|_| at.1 + 1 < self.columns), &|_| false),

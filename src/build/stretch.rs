@@ -7,7 +7,7 @@ use bevy::{math::Mat3A, prelude::*};
 
 use super::faces;
 use crate::solver::{
-    Bend, Braid, Face, Lattice, Level, Tethers, Threads, Topology, Transfer,
+    Bend, StrandPack, Face, Lattice, Level, Tethers, StrandSet, Topology, TransferOperator,
     simd::{LANES, Lane},
 };
 
@@ -69,7 +69,7 @@ pub(crate) fn stretch(
     if let Some((lattice, built)) = topology.lattice.as_mut().zip(built.lattice.as_ref()) {
         stretch_lattice(lattice, built, &places);
     }
-    for (braid, built) in topology.braids.iter_mut().zip(&built.braids) {
+    for (braid, built) in topology.strand_packs.iter_mut().zip(&built.strand_packs) {
         stretch_braid(braid, built, &ratio);
     }
     let mut of_levels = Vec::new();
@@ -87,8 +87,8 @@ pub(crate) fn stretch(
 fn nodes(level: &Level, places: &[Vec3]) -> Vec<Vec3> {
     let place = |slot: u32| places.get(slot as usize).copied().unwrap_or(Vec3::NAN);
     match &level.transfer {
-        Transfer::Lattice { slots, .. } => slots.iter().flatten().map(|&slot| place(slot)).collect(),
-        Transfer::Chart { nodes, .. } => {
+        TransferOperator::Lattice { slots, .. } => slots.iter().flatten().map(|&slot| place(slot)).collect(),
+        TransferOperator::Chart { nodes, .. } => {
             let node = |(corners, weights): &([u32; 3], [f32; 3])| {
                 corners.iter().zip(weights).map(|(&corner, &weight)| place(corner) * weight).sum()
             };
@@ -135,7 +135,7 @@ fn stretch_lattice(lattice: &mut Lattice, built: &Lattice, places: &Places) {
 }
 
 /// Stretches threads by the ratio at (pack, node, lane), over so many steps.
-fn stretch_threads(threads: &mut Threads, built: &Threads, ratio: impl Fn((usize, usize, usize), usize) -> f32) {
+fn stretch_threads(threads: &mut StrandSet, built: &StrandSet, ratio: impl Fn((usize, usize, usize), usize) -> f32) {
     for i in 0..built.stretch.len() {
         let (pack, node) = (i / built.nodes, i % built.nodes);
         let lane = |steps: usize| -> Lane { core::array::from_fn(|l| ratio((pack, node, l), steps)) };
@@ -153,7 +153,7 @@ fn stretch_threads(threads: &mut Threads, built: &Threads, ratio: impl Fn((usize
     }
 }
 
-fn stretch_braid(braid: &mut Braid, built: &Braid, ratio: &impl Fn(u32, u32) -> f32) {
+fn stretch_braid(braid: &mut StrandPack, built: &StrandPack, ratio: &impl Fn(u32, u32) -> f32) {
     let count = built.nodes.len();
     for i in 0..count {
         for l in 0..LANES {

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use bevy::prelude::*;
 
 use super::{
-    bends, braids,
+    bends, strand_packs,
     cells::{self, Cells},
     chart, coloring,
     edges::Edges,
@@ -72,12 +72,12 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
     shares::share_out(&rest, &carrying, &slivers, &warp, &mut all);
     let plate = rectangle.as_ref().map(|rectangle| Plate::new(&rest, rectangle));
     let woven = rectangle.as_ref().zip(plate.as_ref()).map(|(rectangle, plate)| lattice::weave(rectangle, plate, &all));
-    let (lattice, braids, woven) = match woven {
+    let (lattice, strand_packs, woven) = match woven {
         Some((lattice, woven)) => (Some(lattice), Vec::new(), woven),
         None => {
             let threads = threads::find(&rest, &edges, &all);
-            let (braids, woven) = braids::plait(rest.len(), &threads, &all);
-            (None, braids, woven)
+            let (strand_packs, woven) = strand_packs::plait(rest.len(), &threads, &all);
+            (None, strand_packs, woven)
         }
     };
     let levels = match &lattice {
@@ -105,7 +105,7 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
         areas,
         cells: cells.corners,
         lattice,
-        braids,
+        strand_packs,
         levels,
         faces,
         face_batches,

@@ -5,11 +5,11 @@ use bevy::{math::Vec3A, prelude::*};
 use super::{Bodies, Mover};
 use crate::{
     anchor,
-    build::Tying,
+    build::TetherBuild,
     cloth::ClothStatus,
     pins::PinTarget,
     pose::Poses,
-    solver::{Body, Mount, Mounted},
+    solver::{Body, BodyAttachment, AttachedPin},
     state::ClothState,
 };
 
@@ -40,15 +40,15 @@ pub(crate) fn mount_pins(
             }),
         };
         latest = Some((pin.target, mount));
-        work.mounted.extend(mount.map(|mount| Mounted { anchor: number, mount }));
+        work.mounted.extend(mount.map(|mount| AttachedPin { anchor: number, mount }));
     }
 }
 
 /// A body as something to fix anchors to. None where nothing moves it.
-fn mount(bodies: &mut Bodies, entity: Entity, mover: &Mover, origin: Vec3A) -> Option<Mount> {
+fn mount(bodies: &mut Bodies, entity: Entity, mover: &Mover, origin: Vec3A) -> Option<BodyAttachment> {
     let way = bodies.way(entity, mover);
     let (body, dynamic) = way.body.zip(mover.dynamic)?;
-    let mount = Mount {
+    let mount = BodyAttachment {
         body: Body { centre: body.centre - origin, ..body },
         way: way.end * dynamic.centre - way.start * dynamic.centre,
     };
@@ -59,7 +59,7 @@ fn mount(bodies: &mut Bodies, entity: Entity, mover: &Mover, origin: Vec3A) -> O
 pub(crate) fn untie_mounted(mut cloths: Query<(&mut ClothState, &ClothStatus)>) {
     for (mut state, status) in &mut cloths {
         let is_known = |state: &ClothState| {
-            let mounted = state.work.mounted.iter().map(|it| state.work.anchors[it.anchor as usize].particle);
+            let mounted = state.work.mounted.iter().map(|it| state.work.pin_motions[it.anchor as usize].particle);
             mounted.eq(state.mounted.iter().copied())
         };
         if *status != ClothStatus::Ready || is_known(&state) {
@@ -68,12 +68,12 @@ pub(crate) fn untie_mounted(mut cloths: Query<(&mut ClothState, &ClothStatus)>) 
         let state = &mut *state;
         let work = &state.work;
         state.mounted.clear();
-        state.mounted.extend(work.mounted.iter().map(|it| work.anchors[it.anchor as usize].particle));
+        state.mounted.extend(work.mounted.iter().map(|it| work.pin_motions[it.anchor as usize].particle));
         let mounted = state.mounted.clone();
         state.keep_tethers(|pin| !mounted.contains(&pin));
         let pins = &state.pins;
         let tied = pins.iter().map(|pin| pin.particle).filter(|particle| !mounted.contains(particle));
-        state.tying = Some(Box::new(Tying::begin(tied.collect())));
+        state.tying = Some(Box::new(TetherBuild::begin(tied.collect())));
     }
 }
 

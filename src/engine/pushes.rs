@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::{
     cloth::ClothStatus,
-    solver::{Push, Stray},
+    solver::{BodyImpulse, BodyDisplacement},
     state::{ClothState, Given},
 };
 
@@ -33,7 +33,7 @@ pub(crate) fn collect_pushes(mut cloths: Query<(Entity, &ClothStatus, &mut Cloth
     buffer.sort_unstable_by_key(|&(given, cloth, number)| (given.to, cloth, number));
     list.clear();
     let is_felt = |given: &Given| {
-        let Given { push: Push { linear, angular }, stray: Stray { shift, turn }, .. } = given;
+        let Given { push: BodyImpulse { linear, angular }, stray: BodyDisplacement { shift, turn }, .. } = given;
         let is_finite = linear.is_finite() && angular.is_finite() && shift.is_finite() && turn.is_finite();
         is_finite && (*linear != Vec3A::ZERO || *angular != Vec3A::ZERO)
     };
@@ -41,7 +41,7 @@ pub(crate) fn collect_pushes(mut cloths: Query<(Entity, &ClothStatus, &mut Cloth
 }
 
 /// Where a body is that was at `pose`, with its centre of mass at `centre` (m) in its frame, and has strayed.
-pub(crate) fn strayed(pose: Isometry3d, centre: Vec3, stray: &Stray) -> Isometry3d {
+pub(crate) fn strayed(pose: Isometry3d, centre: Vec3, stray: &BodyDisplacement) -> Isometry3d {
     let rotation = (stray.turn * pose.rotation).normalize();
     let centre = Vec3A::from(centre);
     let world_centre = pose * centre + stray.shift;

@@ -106,7 +106,7 @@ fn weave(state: &ClothState) -> String {
         1 => "1 level".into(),
         count => format!("{count} levels"),
     };
-    state.weave().map_or_else(String::new, |weave| format!("{weave}, {levels}"))
+    state.structure().map_or_else(String::new, |weave| format!("{weave}, {levels}"))
 }
 
 fn situation(state: &ClothState, watch: &Watch) -> Option<Situation> {

@@ -7,7 +7,7 @@ use super::simd::{LANES, Lane};
 /// All stand as the solver reads them: node after node, those of the eight threads side by side. Shorter threads than
 /// the longest end in nodes where nobody is.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Braid {
+pub struct StrandPack {
     /// Particles of the threads; the number of all particles where nobody is.
     pub nodes: Vec<[u32; LANES]>,
     /// Rest lengths from a node to the next, m; zero where there is no spring. That from the last node of a ring is the
@@ -23,7 +23,7 @@ pub struct Braid {
     pub closed: bool,
 }
 
-impl Braid {
+impl StrandPack {
     /// Number of threads.
     pub fn thread_count(&self) -> usize {
         self.stretch.first().map_or(0, |rest| rest.iter().filter(|&&rest| rest > 0.0).count())

@@ -13,7 +13,7 @@ pub(super) mod law;
 pub(super) mod level;
 pub(super) mod loose;
 pub mod mount;
-pub(super) mod plate;
+pub(super) mod bend_factors;
 pub mod spring;
 pub(super) mod strand;
 pub mod tether;

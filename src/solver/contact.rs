@@ -28,11 +28,11 @@ pub(super) mod tangle;
 pub(super) mod touch;
 
 pub(super) use body::Bodies;
-pub(super) use faces::Faces;
+pub(super) use faces::MeshContacts;
 pub use mesh::MeshShape;
-pub(super) use near::{Near, near_obstacles};
+pub(super) use near::{BroadPhase, near_obstacles};
 pub(super) use project::project;
-pub use solid::{Solid, Surface};
+pub use solid::{Solid, SurfacePoint};
 
 /// The shape of an obstacle, m, in its own frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +62,7 @@ pub struct Body {
 
 /// What a cloth has given to a body within a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Push {
+pub struct BodyImpulse {
     /// Momentum, N s.
     pub linear: Vec3A,
     /// Angular momentum about the body's centre of mass, N m s.
@@ -71,14 +71,14 @@ pub struct Push {
 
 /// How far a body has come off its given path by what a cloth has given to it within a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stray {
+pub struct BodyDisplacement {
     /// Way of its centre of mass, m.
     pub shift: Vec3A,
     /// Turn about it.
     pub turn: Quat,
 }
 
-impl Default for Stray {
+impl Default for BodyDisplacement {
     fn default() -> Self {
         Self { shift: Vec3A::ZERO, turn: Quat::IDENTITY }
     }

@@ -6,7 +6,7 @@ use bevy::{
     tasks::TaskPool,
 };
 
-use super::{Effort, Grab, Material, Mount, Mounted, Obstacle, Tethers, WindSource};
+use super::{SubstepPolicy, Grab, Material, BodyAttachment, AttachedPin, Obstacle, Tethers, WindSource};
 
 /// How the springs are integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub enum SelfCollision {
 
 /// The way of a fixed particle over one step, m, relative to the cloth's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Anchor {
+pub struct PinMotion {
     /// The particle that is held.
     pub particle: u32,
     /// Where it is when the step starts.
@@ -53,7 +53,7 @@ pub struct StepContext<'a> {
     /// How the springs are integrated.
     pub method: Method,
     /// Substeps a step, and levels. [`Method::Explicit`] finds its own number, [`Method::Xpbd`] has no levels.
-    pub effort: &'a Effort,
+    pub effort: &'a SubstepPolicy,
     /// The most substeps that [`Method::Explicit`] may take.
     pub max_substeps: u32,
     /// What the cloth is made of.
@@ -61,11 +61,11 @@ pub struct StepContext<'a> {
     /// Gravity, m/s².
     pub gravity: Vec3A,
     /// Fixed particles and their way.
-    pub anchors: &'a [Anchor],
+    pub pin_motions: &'a [PinMotion],
     /// Bodies that anchors are fixed to and that give way. On these there are no tethers.
-    pub mounts: &'a [Mount],
+    pub mounts: &'a [BodyAttachment],
     /// Which anchors are fixed to which of them.
-    pub mounted: &'a [Mounted],
+    pub mounted: &'a [AttachedPin],
     /// Hands that pull at the cloth.
     pub grabs: &'a [Grab],
     /// The most that a particle may be faster than what holds the cloth, m/s.

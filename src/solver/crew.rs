@@ -28,7 +28,7 @@ pub(super) fn size(pool: &TaskPool) -> usize {
 
 /// Does all phases, one after the other.
 pub(super) fn run(pool: &TaskPool, phases: &[Phase]) {
-    let progress: Vec<Progress> = phases.iter().map(|_| Progress::default()).collect();
+    let progress: Vec<PhaseProgress> = phases.iter().map(|_| PhaseProgress::default()).collect();
     let work = |worker: usize| {
         for (phase, progress) in phases.iter().zip(&progress) {
             progress.work(phase, worker);
@@ -45,7 +45,7 @@ pub(super) fn run(pool: &TaskPool, phases: &[Phase]) {
 
 /// How far a phase is.
 #[derive(Default)]
-struct Progress {
+struct PhaseProgress {
     /// How many units have been taken, and how many of them from either end.
     taken: AtomicUsize,
     first: AtomicUsize,
@@ -55,7 +55,7 @@ struct Progress {
     bell: Condvar,
 }
 
-impl Progress {
+impl PhaseProgress {
     /// Works along until all units are done.
     fn work(&self, phase: &Phase, worker: usize) {
         loop {
@@ -87,13 +87,13 @@ impl Progress {
 
 /// Counts a unit when it is done, also by a panic: nobody waits for it for ever.
 struct Done<'a> {
-    progress: &'a Progress,
+    progress: &'a PhaseProgress,
     units: usize,
 }
 
 impl Drop for Done<'_> {
     fn drop(&mut self) {
-        let Progress { done, asleep, bell, .. } = self.progress;
+        let PhaseProgress { done, asleep, bell, .. } = self.progress;
         if done.fetch_add(1, Ordering::AcqRel) + 1 == self.units {
             let _asleep = asleep.lock().unwrap_or_else(PoisonError::into_inner);
             bell.notify_all();

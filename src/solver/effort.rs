@@ -1,10 +1,10 @@
 //! How much work a cloth needs to be stretched no more than is wanted.
 
-use super::{LevelPass, Topology, Weave};
+use super::{LevelPass, Topology, MeshStructure};
 
 /// Substeps and levels of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Effort {
+pub struct SubstepPolicy {
     /// Substeps, and the fewest whatever is at stake.
     pub substeps: u32,
     /// Iterations of the coarse levels. Without tethers, there are none.
@@ -13,16 +13,16 @@ pub struct Effort {
     /// they are fixed, it takes half as many more where its triangles and edges meet those of cloth, and 16 at least; three
     /// times as many near solids with edges, or thin ones, and 32 at least; and twice that where they end in a tip, or fit
     /// through a cell.
-    pub careful_substeps: u32,
+    pub contact_substeps: u32,
     /// Levels of those.
-    pub careful_levels: Vec<LevelPass>,
+    pub contact_levels: Vec<LevelPass>,
     /// Whether the substeps are those of a step of 1/60 s, and a longer one has more of them.
     pub follows_time_step: bool,
 }
 
 /// How much is at stake in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Care {
+pub(super) enum ContactRisk {
     None,
     /// Something is near that the cloth may touch, a hand holds it, or no tethers do.
     Some,
@@ -34,9 +34,9 @@ pub(super) enum Care {
     Tip(f32),
 }
 
-impl Effort {
+impl SubstepPolicy {
     /// Fewer leave a cloth on something trembling, and stretch it in the hand.
-    const LEAST_WITH_CARE: f32 = 8.0;
+    const LEAST_AT_CONTACT: f32 = 8.0;
 
     /// The same for each particle along a side.
     const LEAST_OF_SIDE: f32 = 1.0 / 6.0;
@@ -88,47 +88,47 @@ impl Effort {
     /// next to a pin carry its whole load.
     pub fn to_hold(max_strain: f32, topology: &Topology) -> Self {
         let grown = |of_64: f32, power: f32| of_64 * bevy::math::ops::powf(side(topology) / 64.0, power) / max_strain;
-        let without = match topology.weave() {
-            Weave::Lattice { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH),
-            Weave::Threads { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH_ON_THREADS),
-            Weave::Springs { .. } => f32::INFINITY,
+        let without = match topology.structure() {
+            MeshStructure::Grid { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH),
+            MeshStructure::Strands { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH_ON_THREADS),
+            MeshStructure::Unstructured { .. } => f32::INFINITY,
         };
         let with_levels = without > Self::MOST_WITHOUT_LEVELS;
         let of_64 = if without < f32::INFINITY { Self::STRAIN_WITH_LEVELS } else { Self::LOOSE_STRAIN };
         let needed = if with_levels { grown(of_64, 0.9) } else { without };
         let in_range = |substeps: f32| substeps.ceil().clamp(2.0, 64.0) as u32;
         let (substeps, needed) = (in_range(needed.max(least_on_triangles(topology))), in_range(needed));
-        let least = Self::LEAST_WITH_CARE.max(Self::LEAST_OF_SIDE * side(topology)).ceil() as u32;
+        let least = Self::LEAST_AT_CONTACT.max(Self::LEAST_OF_SIDE * side(topology)).ceil() as u32;
         Self {
             substeps,
             levels: if with_levels { Self::levels_down_to(substeps, 1, topology) } else { Vec::new() },
             // Without the floor: near what is sharp, a multiple of these is enough.
-            careful_substeps: needed.max(least),
-            careful_levels: Vec::new(),
+            contact_substeps: needed.max(least),
+            contact_levels: Vec::new(),
             follows_time_step: true,
         }
     }
 
     /// So many substeps in every step.
     pub fn fixed(substeps: u32, levels: Vec<LevelPass>) -> Self {
-        let careful_levels = levels.clone();
-        Self { substeps, levels, careful_substeps: substeps, careful_levels, follows_time_step: false }
+        let contact_levels = levels.clone();
+        Self { substeps, levels, contact_substeps: substeps, contact_levels, follows_time_step: false }
     }
 
     /// Substeps and levels of a step of `dt` seconds.
-    pub(super) fn of_step(&self, care: Care, dt: f32) -> (u32, &[LevelPass]) {
+    pub(super) fn of_step(&self, risk: ContactRisk, dt: f32) -> (u32, &[LevelPass]) {
         let factor = if self.follows_time_step { dt * 60.0 } else { 1.0 };
-        let (substeps, levels) = match care {
-            Care::None => (self.substeps, &self.levels),
-            Care::Some | Care::Robust | Care::Edge(_) | Care::Tip(_) => (self.careful_substeps, &self.careful_levels),
+        let (substeps, levels) = match risk {
+            ContactRisk::None => (self.substeps, &self.levels),
+            ContactRisk::Some | ContactRisk::Robust | ContactRisk::Edge(_) | ContactRisk::Tip(_) => (self.contact_substeps, &self.contact_levels),
         };
         let for_edges = (Self::MORE_WITH_SHARP * substeps as f32).max(Self::LEAST_WITH_SHARP);
-        let substeps = match care {
+        let substeps = match risk {
             _ if !self.follows_time_step => substeps as f32,
-            Care::None | Care::Some => substeps as f32,
-            Care::Robust => (Self::MORE_WITH_ROBUST * substeps as f32).max(Self::LEAST_WITH_ROBUST),
-            Care::Edge(wanted) => (wanted / factor).clamp(for_edges, 2.0 * for_edges),
-            Care::Tip(wanted) => 2.0 * (wanted / factor).clamp(for_edges, 2.0 * for_edges),
+            ContactRisk::None | ContactRisk::Some => substeps as f32,
+            ContactRisk::Robust => (Self::MORE_WITH_ROBUST * substeps as f32).max(Self::LEAST_WITH_ROBUST),
+            ContactRisk::Edge(wanted) => (wanted / factor).clamp(for_edges, 2.0 * for_edges),
+            ContactRisk::Tip(wanted) => 2.0 * (wanted / factor).clamp(for_edges, 2.0 * for_edges),
         };
         let substeps = substeps.max(self.substeps as f32);
         // A step of 1/60 s isn't longer than that by a rounding.
@@ -157,9 +157,9 @@ fn least_on_triangles(topology: &Topology) -> f32 {
     if topology.lattice.is_some() {
         return 0.0;
     }
-    let of_side = Effort::LEAST_ON_TRIANGLES_OF_SIDE * side(topology);
-    let of_slivers = narrowest(topology).min(Effort::MOST_FOR_SLIVERS);
-    Effort::LEAST_ON_TRIANGLES.max(of_side).max(of_slivers)
+    let of_side = SubstepPolicy::LEAST_ON_TRIANGLES_OF_SIDE * side(topology);
+    let of_slivers = narrowest(topology).min(SubstepPolicy::MOST_FOR_SLIVERS);
+    SubstepPolicy::LEAST_ON_TRIANGLES.max(of_side).max(of_slivers)
 }
 
 /// Longest side over height of the narrowest triangle, no unit. 1 where there is none.

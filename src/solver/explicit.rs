@@ -6,7 +6,7 @@ use bevy::math::Vec3A;
 
 use super::{
     Lanes, Material, Moduli, Particles, Spring, SpringConstants, SpringKind, StepContext, Topology,
-    constraint::{bend::Bent, face::Deformed},
+    constraint::{bend::BendElement, face::FaceStrain},
 };
 
 /// What ω² h² + 2 γ h may come to. Symplectic Euler is stable below 4: a tenth of it is left for cloth that
@@ -77,7 +77,7 @@ fn most_stretched(lanes: &Lanes, topology: &Topology, material: &Material) -> f3
     let place = |particle: u32| lanes.position.get(lanes.order.slot(particle));
     let strain = |spring: &Spring| place(spring.a).distance(place(spring.b)) / spring.rest - 1.0;
     let of_threads = topology.springs_of(SpringKind::Structural).map(strain).fold(0.0, f32::max);
-    let of_faces = topology.faces.iter().map(|face| Deformed::new(face, face.particles.map(place)).longest() - 1.0);
+    let of_faces = topology.faces.iter().map(|face| FaceStrain::new(face, face.particles.map(place)).longest() - 1.0);
     of_faces.fold(of_threads, f32::max)
 }
 
@@ -164,15 +164,15 @@ pub(super) fn add_sheet_forces(
     let at = |particle: u32| particles.position[particle as usize];
     let rate = |particle: u32| particles.velocity[particle as usize];
     for face in &topology.faces {
-        let rates = Deformed::new(face, face.particles.map(rate));
-        let [on_b, on_c] = Deformed::new(face, face.particles.map(at)).forces(face, moduli, &rates, longest);
+        let rates = FaceStrain::new(face, face.particles.map(rate));
+        let [on_b, on_c] = FaceStrain::new(face, face.particles.map(at)).forces(face, moduli, &rates, longest);
         for (&particle, pull) in face.particles.iter().zip([-(on_b + on_c), on_b, on_c]) {
             force[particle as usize] += pull * stiffness_scale;
         }
     }
     for bend in &topology.bends {
-        let rates = Bent::new(bend, bend.particles.map(rate));
-        let forces = Bent::new(bend, bend.particles.map(at)).forces(bend, moduli, &rates);
+        let rates = BendElement::new(bend, bend.particles.map(rate));
+        let forces = BendElement::new(bend, bend.particles.map(at)).forces(bend, moduli, &rates);
         for (&particle, pull) in bend.particles.iter().zip(forces) {
             force[particle as usize] += pull * stiffness_scale;
         }

@@ -6,7 +6,7 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 use super::{
     StepContext,
     lanes::{Points, Run},
-    simd::{Instructions, Vec3x8, lane},
+    simd::{SimdLevel, Vec3x8, lane},
 };
 
 /// What moves particles freely during a substep.
@@ -25,8 +25,8 @@ pub(super) struct Motion<'a> {
 }
 
 /// Symplectic Euler: velocities from forces (N) and gravity (m/s²), then positions from the new velocities.
-pub(super) fn predict(run: &mut Run, motion: Motion, instructions: Instructions) {
-    dispatch!(instructions.level(), simd => predict_eights(simd, run, motion));
+pub(super) fn predict(run: &mut Run, motion: Motion, simd_level: SimdLevel) {
+    dispatch!(simd_level.level(), simd => predict_eights(simd, run, motion));
 }
 
 #[inline(always)]
@@ -111,8 +111,8 @@ pub(super) struct Finish<'a> {
 ///
 /// That is (position - previous) / h, written as what the constraints have added to the integrated velocity: a way of
 /// g h² is lost to rounding when h is small, a change of speed of g h isn't.
-pub(super) fn finish(run: &mut Run, finish: Finish, instructions: Instructions) {
-    dispatch!(instructions.level(), simd => finish_eights(simd, run, finish));
+pub(super) fn finish(run: &mut Run, finish: Finish, simd_level: SimdLevel) {
+    dispatch!(simd_level.level(), simd => finish_eights(simd, run, finish));
 }
 
 #[inline(always)]

@@ -6,9 +6,9 @@ use fearless_simd::{dispatch, f32x4, f32x8, prelude::*};
 
 use super::{
     Particles,
-    constraint::weave::Sheet,
+    constraint::weave::GridView,
     order::{Band, Order},
-    simd::{Instructions, LANES, Lane, lane},
+    simd::{SimdLevel, LANES, Lane, lane},
 };
 
 /// Eight points or directions: all x, all y, all z.
@@ -41,19 +41,19 @@ impl Points {
     }
 
     /// Hands one point for each particle back.
-    pub fn store(&self, order: Order, points: &mut [Vec3A], instructions: Instructions) {
+    pub fn store(&self, order: Order, points: &mut [Vec3A], simd_level: SimdLevel) {
         for band in order.bands() {
             let blocks = &self.0[band.blocks()];
-            dispatch!(instructions.level(), simd => store_blocks(simd, blocks, band, &mut points[band.particles()]));
+            dispatch!(simd_level.level(), simd => store_blocks(simd, blocks, band, &mut points[band.particles()]));
         }
     }
 
     /// Takes over one point for each particle.
-    pub fn load(&mut self, order: Order, points: &[Vec3A], instructions: Instructions) {
+    pub fn load(&mut self, order: Order, points: &[Vec3A], simd_level: SimdLevel) {
         self.resize(order.block_count());
         for band in order.bands() {
             let blocks = &mut self.0[band.blocks()];
-            dispatch!(instructions.level(), simd => load_blocks(simd, blocks, band, &points[band.particles()]));
+            dispatch!(simd_level.level(), simd => load_blocks(simd, blocks, band, &points[band.particles()]));
         }
     }
 }
@@ -142,19 +142,19 @@ impl Lanes {
     }
 
     /// Takes over the state of a cloth.
-    pub fn load(&mut self, particles: &Particles, order: Order, instructions: Instructions) {
+    pub fn load(&mut self, particles: &Particles, order: Order, simd_level: SimdLevel) {
         self.fit(order);
         for band in order.bands() {
-            self.band(band).load(particles, band, instructions);
+            self.band(band).load(particles, band, simd_level);
         }
     }
 
     /// Hands the state back.
-    pub fn store(&mut self, particles: &mut Particles, instructions: Instructions) {
+    pub fn store(&mut self, particles: &mut Particles, simd_level: SimdLevel) {
         let Particles { position, velocity, .. } = particles;
         for band in self.order.bands() {
             let (position, velocity) = (&mut position[band.particles()], &mut velocity[band.particles()]);
-            self.band(band).store(position, velocity, band, instructions);
+            self.band(band).store(position, velocity, band, simd_level);
         }
     }
 
@@ -190,14 +190,14 @@ pub(super) struct Run<'a> {
 
 impl Run<'_> {
     /// What constraints of a lattice work on.
-    pub fn sheet(&mut self) -> Sheet<'_> {
+    pub fn sheet(&mut self) -> GridView<'_> {
         let Self { position, previous, inverse_mass, row_masses, .. } = self;
-        Sheet { position, previous, inverse_mass, row_masses }
+        GridView { position, previous, inverse_mass, row_masses }
     }
 
     /// Takes over the state of a band.
-    pub fn load(&mut self, particles: &Particles, band: Band, instructions: Instructions) {
-        let level = instructions.level();
+    pub fn load(&mut self, particles: &Particles, band: Band, simd_level: SimdLevel) {
+        let level = simd_level.level();
         let (position, velocity) = (&particles.position[band.particles()], &particles.velocity[band.particles()]);
         dispatch!(level, simd => load_blocks(simd, self.position, band, position));
         dispatch!(level, simd => load_blocks(simd, self.velocity, band, velocity));
@@ -215,8 +215,8 @@ impl Run<'_> {
     }
 
     /// Hands the state of a band back, to its own particles.
-    pub fn store(&self, position: &mut [Vec3A], velocity: &mut [Vec3A], band: Band, instructions: Instructions) {
-        let level = instructions.level();
+    pub fn store(&self, position: &mut [Vec3A], velocity: &mut [Vec3A], band: Band, simd_level: SimdLevel) {
+        let level = simd_level.level();
         dispatch!(level, simd => store_blocks(simd, self.position, band, position));
         dispatch!(level, simd => store_blocks(simd, self.velocity, band, velocity));
     }
@@ -280,14 +280,14 @@ mod tests {
                 position: points,
             };
             let mut lanes = Lanes::default();
-            lanes.load(&particles, order, Instructions::Best);
+            lanes.load(&particles, order, SimdLevel::Best);
             for particle in 0..count {
                 assert_eq!(lanes.position.get(order.slot(particle as u32)), particles.position[particle]);
             }
             assert_eq!(lanes.inverse_mass.as_flattened().iter().sum::<f32>(), count as f32);
             let (position, velocity) = (vec![Vec3A::ONE; count], vec![Vec3A::ONE; count]);
             let mut back = Particles { position, velocity, ..particles.clone() };
-            lanes.store(&mut back, Instructions::Baseline);
+            lanes.store(&mut back, SimdLevel::Baseline);
             assert_eq!(back, particles);
         }
     }

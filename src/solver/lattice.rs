@@ -19,9 +19,9 @@ pub struct Lattice {
     /// Number of columns.
     pub columns: usize,
     /// Along the rows.
-    pub along_rows: Threads,
+    pub along_rows: StrandSet,
     /// Along the columns.
-    pub along_columns: Threads,
+    pub along_columns: StrandSet,
     /// Rest lengths of the diagonals from a particle to the next column of the next row, m: for each eight columns, one
     /// entry a row.
     pub falling: Vec<Lane>,
@@ -33,7 +33,7 @@ pub struct Lattice {
     /// places of two opposite corners less those of the others.
     pub twist: Vec<Lane>,
     /// What bends and twists are at rest, where the cloth isn't flat.
-    pub curl: Option<Box<Curl>>,
+    pub curl: Option<Box<RestCurvature>>,
 }
 
 /// What the bends and twists of a lattice are at rest, no unit: along the way from the particle before to that after,
@@ -42,7 +42,7 @@ pub struct Lattice {
 /// Of a twist, along is the way from the cell's first corner to that opposite, and across that between the others, down.
 /// After the last row or column, across is seen as from the one before.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Curl {
+pub struct RestCurvature {
     /// Of the rows, at each particle.
     pub along_rows: Vec<[Lane; 3]>,
     /// Of the columns, at each particle.
@@ -53,7 +53,7 @@ pub struct Curl {
 
 /// The springs along all rows or along all columns.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Threads {
+pub struct StrandSet {
     /// Nodes that each thread has room for: those of rows go on to the end of the last block.
     pub nodes: usize,
     /// Nodes of each thread.
@@ -106,7 +106,7 @@ impl Lattice {
         let of_columns = || (0..columns).step_by(LANES).flat_map(move |column| (0..rows).map(move |row| (row, column)));
         let lanes = |of: &dyn Fn(usize) -> f32| -> Lane { core::array::from_fn(of) };
         // The bend at a node is that of the way that starts at the one before.
-        let along_rows = Threads {
+        let along_rows = StrandSet {
             nodes: width,
             count: columns,
             closed,
@@ -125,7 +125,7 @@ impl Lattice {
                 })
                 .collect(),
         };
-        let along_columns = Threads {
+        let along_columns = StrandSet {
             nodes: rows,
             count: rows,
             closed: false,
@@ -193,7 +193,7 @@ impl Link {
     }
 }
 
-impl Threads {
+impl StrandSet {
     /// Rest lengths of the eight threads with number `pack`.
     #[inline(always)]
     pub(super) fn stretch(&self, pack: usize) -> &[Lane] {

@@ -26,20 +26,20 @@ pub struct Level {
     /// How many particles a node stands for.
     pub share: f32,
     /// How the nodes move along with those of the next coarser level, if there is one.
-    pub from_coarser: Option<Spread>,
+    pub from_coarser: Option<Prolongation>,
     /// How the nodes lie among the particles.
-    pub transfer: Transfer,
+    pub transfer: TransferOperator,
 }
 
 /// How the nodes of a level follow the particles, and the particles the nodes. Nodes are in the order of their slots.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Transfer {
+pub enum TransferOperator {
     /// For a cloth in rows and columns: nodes are particles.
     Lattice {
         /// Slots of the particles that the nodes are; [`Level::NOBODY`] where there is no node.
         slots: Vec<[u32; LANES]>,
         /// How the particles move along with them.
-        spread: Spread,
+        spread: Prolongation,
     },
     /// For any other cloth: nodes lie in triangles.
     Chart {
@@ -53,7 +53,7 @@ pub enum Transfer {
 
 /// A place between two neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Between {
+pub struct LinearWeights {
     /// The first of the two.
     pub first: u32,
     /// Share of the way to the second, 0..=1.
@@ -67,26 +67,26 @@ impl Level {
 
 /// What the crossings of rows and columns have of the nodes of a coarser lattice: each lies between four.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Spread {
+pub struct Prolongation {
     /// Where each row lies between the rows of nodes.
-    pub rows: Vec<Between>,
+    pub rows: Vec<LinearWeights>,
     /// For each eight columns: the columns of nodes around them, and the share that each of the eight has of them.
     pub columns: Vec<Vec<(u32, Lane)>>,
 }
 
-impl Spread {
+impl Prolongation {
     /// From nodes at the crossings of some rows and columns, at these coordinates, to places at those of others. Where
     /// rows are a `ring`, that is where columns begin again at 0.
     pub fn new([rows, columns]: [&[f32]; 2], ring: Option<f32>, [to_rows, to_columns]: [&[f32]; 2]) -> Self {
-        let across: Vec<Between> = to_columns.iter().map(|&at| Between::locate_on(ring, columns, at)).collect();
+        let across: Vec<LinearWeights> = to_columns.iter().map(|&at| LinearWeights::locate_on(ring, columns, at)).collect();
         Self {
-            rows: to_rows.iter().map(|&at| Between::locate(rows, at)).collect(),
+            rows: to_rows.iter().map(|&at| LinearWeights::locate(rows, at)).collect(),
             columns: across.chunks(LANES).map(|places| shares(places, columns.len() as u32)).collect(),
         }
     }
 }
 
-impl Between {
+impl LinearWeights {
     /// Where `coordinate` lies between two of `places`, at least two that rise: on a `ring` of that length, or on none.
     fn locate_on(ring: Option<f32>, places: &[f32], coordinate: f32) -> Self {
         let last = places[places.len() - 1];
@@ -108,12 +108,12 @@ impl Between {
 }
 
 /// The neighbours around eight places in a row of `count` nodes, and the share that each place has of them.
-fn shares(places: &[Between], count: u32) -> Vec<(u32, Lane)> {
-    let second = |place: &Between| (place.first + 1) % count;
+fn shares(places: &[LinearWeights], count: u32) -> Vec<(u32, Lane)> {
+    let second = |place: &LinearWeights| (place.first + 1) % count;
     let mut nodes: Vec<u32> = places.iter().flat_map(|place| [place.first, second(place)]).collect();
     nodes.sort_unstable();
     nodes.dedup();
-    let share = |node: u32, place: &Between| match node {
+    let share = |node: u32, place: &LinearWeights| match node {
         node if node == place.first => 1.0 - place.share,
         node if node == second(place) => place.share,
         _ => 0.0,

@@ -4,9 +4,9 @@ use bevy::math::Vec3A;
 
 use super::{
     Material, Particles, SpringKind, Topology,
-    constraint::{bend::Bent, face::Deformed, spring},
+    constraint::{bend::BendElement, face::FaceStrain, spring},
     contact::{
-        surface::{Bounds, Places, Walk},
+        surface::{Bounds, BvhBounds, Traversal},
         tangle,
     },
 };
@@ -71,10 +71,10 @@ pub fn energy(particles: &Particles, topology: &Topology, material: &Material, g
     if let Some(moduli) = material.moduli() {
         let at = |particle: u32| particles.position[particle as usize];
         for face in &topology.faces {
-            energy.elastic += face.area * Deformed::new(face, face.particles.map(at)).energy(moduli);
+            energy.elastic += face.area * FaceStrain::new(face, face.particles.map(at)).energy(moduli);
         }
         for bend in &topology.bends {
-            energy.elastic += moduli.bending * Bent::new(bend, bend.particles.map(at)).energy(bend);
+            energy.elastic += moduli.bending * BendElement::new(bend, bend.particles.map(at)).energy(bend);
         }
     }
     energy
@@ -86,10 +86,10 @@ pub fn energy(particles: &Particles, topology: &Topology, material: &Material, g
 pub fn intersecting_pairs(particles: &Particles, topology: &Topology) -> usize {
     let surface = topology.surface();
     let corners = |triangle: [u32; 3]| triangle.map(|i| particles.position[i as usize]);
-    let mut places = Places::default();
+    let mut places = BvhBounds::default();
     places.follow(surface, |triangle| Bounds::around(corners(triangle)), None::<fn(_) -> _>);
     let mut count = 0;
-    Walk::default().between((surface, &places), (surface, &places), |p, q| {
+    Traversal::default().between((surface, &places), (surface, &places), |p, q| {
         for s in surface.of_leaf(p) {
             for t in surface.of_leaf(q).filter(|&t| s < t) {
                 let (one, other) = (surface.triangles[s], surface.triangles[t]);
@@ -112,11 +112,11 @@ pub fn intersecting_pairs_between(
     let (a, b) = (topology.surface(), other.surface());
     let corners = |triangle: [u32; 3]| triangle.map(|i| particles.position[i as usize]);
     let other_corners = |triangle: [u32; 3]| triangle.map(|i| others.position[i as usize] + offset);
-    let [mut at, mut bt] = [Places::default(), Places::default()];
+    let [mut at, mut bt] = [BvhBounds::default(), BvhBounds::default()];
     at.follow(a, |triangle| Bounds::around(corners(triangle)), None::<fn(_) -> _>);
     bt.follow(b, |triangle| Bounds::around(other_corners(triangle)), None::<fn(_) -> _>);
     let mut count = 0;
-    Walk::default().between((a, &at), (b, &bt), |p, q| {
+    Traversal::default().between((a, &at), (b, &bt), |p, q| {
         for s in a.of_leaf(p) {
             for t in b.of_leaf(q) {
                 count += usize::from(tangle::intersect(corners(a.triangles[s]), other_corners(b.triangles[t])));

@@ -9,13 +9,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use bevy::tasks::TaskPool;
 
 use super::{
-    Instructions, Lanes, Particles,
+    SimdLevel, Lanes, Particles,
     constraint::{
-        bias::Bias,
-        diagonal::{self, CellYarn, Seam},
-        level::{LevelRun, Levels},
+        bias::ShearScratch,
+        diagonal::{self, CellMaterial, Seam},
+        level::{LevelSolve, Levels},
         tether::{self, PinPlaces, TetherBlock},
-        weave::{self, Last, Loom, Weaver},
+        weave::{self, StrandDirection, StrandScratch, GridStrandSolver},
     },
     crew::{self, Phase},
     integrate::{self, Finish, Motion},
@@ -28,12 +28,12 @@ pub(super) const LARGE: usize = 10_000;
 
 /// What the threads need to know of a substep.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Work<'a> {
-    pub weaver: Weaver<'a>,
-    pub cells: CellYarn<'a>,
-    pub last: Last,
+pub(super) struct SharedStep<'a> {
+    pub weaver: GridStrandSolver<'a>,
+    pub cells: CellMaterial<'a>,
+    pub last: StrandDirection,
     /// Levels that are solved already, if there are any.
-    pub levels: Option<(&'a LevelRun<'a>, &'a Levels)>,
+    pub levels: Option<(&'a LevelSolve<'a>, &'a Levels)>,
     pub tethers: &'a [TetherBlock],
     pub pins: &'a PinPlaces,
     pub slack: f32,
@@ -43,20 +43,20 @@ pub(super) struct Work<'a> {
 
 /// Buffers of one thread.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Bench {
+pub(super) struct WorkerScratch {
     /// Threads that are being solved.
-    pub loom: Loom,
+    pub strand_scratch: StrandScratch,
     /// Rows between bands.
     pub seam: Seam,
     /// Diagonals that are being solved.
-    pub bias: Bias,
+    pub bias: ShearScratch,
     /// Ways of a level's rows, spread over eight columns.
     pub across: Points,
 }
 
 /// Moves the cloth along with its levels, solves tethers and springs, and finishes the substep.
-pub(super) fn solve(pool: &TaskPool, lanes: &mut Lanes, benches: &mut Vec<Bench>, work: &Work) {
-    benches.resize_with(benches.len().max(crew::size(pool)), Bench::default);
+pub(super) fn solve(pool: &TaskPool, lanes: &mut Lanes, benches: &mut Vec<WorkerScratch>, work: &SharedStep) {
+    benches.resize_with(benches.len().max(crew::size(pool)), WorkerScratch::default);
     let order = lanes.order;
     let cloth = Cloth {
         work,
@@ -71,8 +71,8 @@ pub(super) fn solve(pool: &TaskPool, lanes: &mut Lanes, benches: &mut Vec<Bench>
     let end = |band, _| cloth.finish(band);
     let bands = cloth.bands.len();
     let [first, second] = work.last.order().map(|threads| match threads {
-        Last::Columns => Phase { units: order.pack_count().div_ceil(2), work: &columns },
-        Last::Rows => Phase { units: bands, work: &rows },
+        StrandDirection::Columns => Phase { units: order.pack_count().div_ceil(2), work: &columns },
+        StrandDirection::Rows => Phase { units: bands, work: &rows },
     });
     let [begin, cross, end] = [
         Phase { units: bands, work: &begin },
@@ -90,20 +90,20 @@ pub(super) fn load(
     particles: &Particles,
     order: Order,
     free: Option<Motion>,
-    instructions: Instructions,
+    simd_level: SimdLevel,
 ) -> bool {
     lanes.fit(order);
     let runs: Vec<_> = order.bands().zip(lanes.bands()).map(Mutex::new).collect();
     let is_pushed = AtomicBool::new(false);
     let load = |number: usize, _| {
         let (band, run) = &mut *lock(&runs[number]);
-        run.load(particles, *band, instructions);
-        weave::masses_along_rows(run.inverse_mass, *band, run.row_masses, instructions);
+        run.load(particles, *band, simd_level);
+        weave::masses_along_rows(run.inverse_mass, *band, run.row_masses, simd_level);
         is_pushed.fetch_or(particles.is_pushed(band.particles()), Ordering::Relaxed);
     };
     let begin = |number: usize, _| {
         if let Some(motion) = free.filter(|_| !is_pushed.load(Ordering::Relaxed)) {
-            integrate::predict(&mut lock(&runs[number]).1, motion, instructions);
+            integrate::predict(&mut lock(&runs[number]).1, motion, simd_level);
         }
     };
     crew::run(pool, &[Phase { units: runs.len(), work: &load }, Phase { units: runs.len(), work: &begin }]);
@@ -111,7 +111,7 @@ pub(super) fn load(
 }
 
 /// Hands the state back.
-pub(super) fn store(pool: &TaskPool, lanes: &mut Lanes, particles: &mut Particles, instructions: Instructions) {
+pub(super) fn store(pool: &TaskPool, lanes: &mut Lanes, particles: &mut Particles, simd_level: SimdLevel) {
     let Particles { position, velocity, .. } = particles;
     let (mut position, mut velocity) = (&mut position[..], &mut velocity[..]);
     let order = lanes.order;
@@ -124,46 +124,46 @@ pub(super) fn store(pool: &TaskPool, lanes: &mut Lanes, particles: &mut Particle
     let runs: Vec<_> = order.bands().zip(lanes.bands()).map(cut).collect();
     let store = |number: usize, _| {
         let (band, run, position, velocity) = &mut *lock(&runs[number]);
-        run.store(position, velocity, *band, instructions);
+        run.store(position, velocity, *band, simd_level);
     };
     crew::run(pool, &[Phase { units: runs.len(), work: &store }]);
 }
 
 /// A cloth while threads work on it. Nobody holds more than one band at a time.
 struct Cloth<'a> {
-    work: &'a Work<'a>,
+    work: &'a SharedStep<'a>,
     bands: Vec<Band>,
     /// What is in the bands.
     runs: Vec<Mutex<Run<'a>>>,
     /// One for each worker.
-    benches: Vec<Mutex<&'a mut Bench>>,
+    benches: Vec<Mutex<&'a mut WorkerScratch>>,
 }
 
 impl Cloth<'_> {
     /// Levels, tethers, and the diagonals below even rows.
     fn begin(&self, number: usize, worker: usize) {
-        let Work { weaver: Weaver { lattice, instructions, .. }, cells, levels, tethers, pins, slack, .. } = *self.work;
+        let SharedStep { weaver: GridStrandSolver { lattice, simd_level, .. }, cells, levels, tethers, pins, slack, .. } = *self.work;
         let (band, mut run) = (self.bands[number], lock(&self.runs[number]));
         let Run { first, position, inverse_mass, .. } = &mut *run;
         if let Some((run, levels)) = levels {
             levels.move_band(run, band, position, inverse_mass, &mut lock(&self.benches[worker]).across);
         }
-        tether::solve(position, inverse_mass, *first, tethers, pins, slack, instructions);
+        tether::solve(position, inverse_mass, *first, tethers, pins, slack, simd_level);
         let bias = &mut lock(&self.benches[worker]).bias;
-        diagonal::solve_band(&mut run.sheet(), band, 0, lattice, cells, bias, instructions);
+        diagonal::solve_band(&mut run.sheet(), band, 0, lattice, cells, bias, simd_level);
     }
 
     /// The diagonals below odd rows, and those to the band above: they have no particle in common.
     fn cross(&self, number: usize, worker: usize) {
-        let Work { weaver: Weaver { lattice, instructions, .. }, cells, .. } = *self.work;
+        let SharedStep { weaver: GridStrandSolver { lattice, simd_level, .. }, cells, .. } = *self.work;
         let band = self.bands[number];
-        let Bench { seam, bias, .. } = &mut **lock(&self.benches[worker]);
-        diagonal::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, cells, bias, instructions);
+        let WorkerScratch { seam, bias, .. } = &mut **lock(&self.benches[worker]);
+        diagonal::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, cells, bias, simd_level);
         let Some(above) = number.checked_sub(1) else { return };
         for (row, band) in [above, number].into_iter().enumerate() {
             seam.take(&lock(&self.runs[band]).sheet(), self.bands[band], row);
         }
-        seam.solve(band, lattice, cells, bias, instructions);
+        seam.solve(band, lattice, cells, bias, simd_level);
         for (row, band) in [above, number].into_iter().enumerate() {
             seam.put(lock(&self.runs[band]).position, self.bands[band], row);
         }
@@ -172,25 +172,25 @@ impl Cloth<'_> {
     /// Two packs of columns.
     fn solve_columns(&self, pair: usize, worker: usize) {
         let (weaver, first) = (&self.work.weaver, 2 * pair);
-        let loom = &mut lock(&self.benches[worker]).loom;
+        let strand_scratch = &mut lock(&self.benches[worker]).strand_scratch;
         for (&band, run) in self.bands.iter().zip(&self.runs) {
-            weaver.take_columns(&lock(run).sheet(), band, first, loom);
+            weaver.take_columns(&lock(run).sheet(), band, first, strand_scratch);
         }
-        weaver.solve_taken_columns(first, loom);
+        weaver.solve_taken_columns(first, strand_scratch);
         for (&band, run) in self.bands.iter().zip(&self.runs) {
-            weaver.put_columns(loom, lock(run).position, band, first);
+            weaver.put_columns(strand_scratch, lock(run).position, band, first);
         }
     }
 
     fn solve_rows(&self, number: usize, worker: usize) {
-        let loom = &mut lock(&self.benches[worker]).loom;
+        let strand_scratch = &mut lock(&self.benches[worker]).strand_scratch;
         let part = &mut lock(&self.runs[number]);
-        self.work.weaver.solve_rows(&mut part.sheet(), self.bands[number], loom);
+        self.work.weaver.solve_rows(&mut part.sheet(), self.bands[number], strand_scratch);
     }
 
     fn finish(&self, number: usize) {
         if let Some(finish) = self.work.finish {
-            integrate::finish(&mut lock(&self.runs[number]), finish, self.work.weaver.instructions);
+            integrate::finish(&mut lock(&self.runs[number]), finish, self.work.weaver.simd_level);
         }
     }
 }

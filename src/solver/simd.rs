@@ -20,7 +20,7 @@ pub(super) const SHORTEST: f32 = 1e-9;
 
 /// Which instructions a step uses. The bits are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Instructions {
+pub enum SimdLevel {
     /// The widest that the processor has.
     #[default]
     Best,
@@ -28,7 +28,7 @@ pub enum Instructions {
     Baseline,
 }
 
-impl Instructions {
+impl SimdLevel {
     pub(super) fn level(self) -> fearless_simd::Level {
         match self {
             Self::Best => fearless_simd::Level::new(),

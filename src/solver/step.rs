@@ -6,13 +6,13 @@ use bevy::{math::Vec3A, tasks::TaskPool};
 
 use super::{
     Lattice, LevelPass, Method, Particles, Scratch, SelfCollision, StepContext, StepReport, Topology,
-    constraint::{anchor, grab, weave::Last},
+    constraint::{anchor, grab, weave::StrandDirection},
     contact::{
-        self, Faces,
-        outline::Sharp,
-        touch::{self, Touch},
+        self, MeshContacts,
+        outline::Sharpness,
+        touch::{self, FeatureContacts},
     },
-    effort::Care,
+    effort::ContactRisk,
     explicit::{self, Stability},
     force::wind,
     imperfection,
@@ -104,7 +104,7 @@ pub fn step_together(members: &mut [Member]) {
 }
 
 /// The substeps of cloths that may touch each other.
-fn run(cloths: &mut [Running], substeps: u32, touch: &mut Touch) {
+fn run(cloths: &mut [Running], substeps: u32, touch: &mut FeatureContacts) {
     let may_touch = touch.begin(cloths);
     for i in 0..substeps {
         let span = i as f32 / substeps as f32..(i + 1) as f32 / substeps as f32;
@@ -154,21 +154,21 @@ impl<'a> Plan<'a> {
         let touches = ctx.self_collision != SelfCollision::Off;
         let is_mounted = !ctx.mounted.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
-        let care = match (touch::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.self_collision) {
-            (Some((Sharp::Tip, wanted)), _) => Care::Tip(wanted),
-            (Some((Sharp::Edge, wanted)), _) => Care::Edge(wanted),
-            (None, SelfCollision::Robust) => Care::Robust,
-            (None, _) if with_care => Care::Some,
-            (None, _) => Care::None,
+        let risk = match (touch::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.self_collision) {
+            (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
+            (Some((Sharpness::Edge, wanted)), _) => ContactRisk::Edge(wanted),
+            (None, SelfCollision::Robust) => ContactRisk::Robust,
+            (None, _) if with_care => ContactRisk::Some,
+            (None, _) => ContactRisk::None,
         };
-        let (wanted, levels) = ctx.effort.of_step(care, dt);
+        let (wanted, levels) = ctx.effort.of_step(risk, dt);
         // Levels move what hangs on a body without its weight on the body.
         let levels = if is_mounted { &[] } else { levels };
         let (most, stability, levels) = match ctx.method {
             Method::Strands => (u32::MAX, Stability::unconditional(wanted), levels),
             Method::Xpbd => (u32::MAX, Stability::unconditional(wanted), &[][..]),
             Method::Explicit => {
-                scratch.lanes.load(particles, topology.order(), scratch.instructions);
+                scratch.lanes.load(particles, topology.order(), scratch.simd_level);
                 grab::take_up(&mut scratch.lanes, ctx.grabs);
                 scratch.mounts.begin(&mut scratch.lanes, topology, ctx);
                 let stability = explicit::stability(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
@@ -221,8 +221,8 @@ impl<'a> Running<'a> {
         let Loaded { is_pushed, has_moved } = load(particles, topology, ctx, h, helpers, scratch);
         grab::take_up(&mut scratch.lanes, ctx.grabs);
         scratch.near.begin();
-        scratch.faces.resize_with(ctx.obstacles.len().max(scratch.faces.len()), Faces::default);
-        scratch.faces.iter_mut().for_each(Faces::begin);
+        scratch.faces.resize_with(ctx.obstacles.len().max(scratch.faces.len()), MeshContacts::default);
+        scratch.faces.iter_mut().for_each(MeshContacts::begin);
         scratch.mounts.begin(&mut scratch.lanes, topology, ctx);
         let substep = Substep {
             topology,
@@ -232,9 +232,9 @@ impl<'a> Running<'a> {
             is_pushed,
             is_near,
             touches: ctx.self_collision != SelfCollision::Off || is_near,
-            limit: SpeedLimit { around: anchor::mean_velocity(ctx.anchors, dt), most: ctx.max_velocity },
+            limit: SpeedLimit { around: anchor::mean_velocity(ctx.pin_motions, dt), most: ctx.max_velocity },
             helpers,
-            last: Last::between(ctx.anchors, topology.order()),
+            last: StrandDirection::between(ctx.pin_motions, topology.order()),
             levels,
             slack: ctx.slack(),
         };
@@ -278,7 +278,7 @@ impl<'a> Running<'a> {
         if !self.has_moved {
             substep.move_freely(scratch);
         }
-        anchor::advance(&mut scratch.lanes, ctx.anchors, span.end, self.dt);
+        anchor::advance(&mut scratch.lanes, ctx.pin_motions, span.end, self.dt);
         let Scratch { lanes, mounts, applied_force, .. } = &mut **scratch;
         mounts.advance(lanes, ctx, span.clone(), self.dt, substep.applied(applied_force));
         scratch.bodies.advance(ctx, span.clone(), substep.h);
@@ -317,8 +317,8 @@ impl<'a> Running<'a> {
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
         let is_constrained = ctx.method != Method::Explicit || substep.touches || !ctx.grabs.is_empty();
         if !self.is_finished && is_constrained {
-            let Scratch { lanes, applied_force, instructions, .. } = &mut **scratch;
-            integrate::finish(&mut lanes.whole(), substep.finish(applied_force, self.has_moved), *instructions);
+            let Scratch { lanes, applied_force, simd_level, .. } = &mut **scratch;
+            integrate::finish(&mut lanes.whole(), substep.finish(applied_force, self.has_moved), *simd_level);
         }
     }
 
@@ -326,10 +326,10 @@ impl<'a> Running<'a> {
     fn end(self) -> StepReport {
         let Self { particles, scratch, substep, substeps, contacts, touched, .. } = self;
         let contacts = contacts + touched;
-        let Scratch { lanes, steady_force, instructions, .. } = scratch;
+        let Scratch { lanes, steady_force, simd_level, .. } = scratch;
         match substep.helpers {
-            Some((pool, _)) => share::store(pool, lanes, particles, *instructions),
-            None => lanes.store(particles, *instructions),
+            Some((pool, _)) => share::store(pool, lanes, particles, *simd_level),
+            None => lanes.store(particles, *simd_level),
         }
         let steady_force = if substep.is_pushed { steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
         let Stability { needed: needed_substeps, scale: stiffness_scale, .. } = substep.stability;
@@ -354,14 +354,14 @@ fn load(
     helpers: Option<(&TaskPool, &Lattice)>,
     scratch: &mut Scratch,
 ) -> Loaded {
-    let Scratch { lanes, instructions, .. } = scratch;
+    let Scratch { lanes, simd_level, .. } = scratch;
     let feels_air = wind::feels_air(ctx);
     let Some((pool, lattice)) = helpers else {
-        lanes.load(particles, topology.order(), *instructions);
+        lanes.load(particles, topology.order(), *simd_level);
         return Loaded { is_pushed: feels_air || particles.is_pushed(0..particles.len()), has_moved: false };
     };
     let free = (!feels_air).then(|| Motion::free(ctx, h));
-    let is_pushed = feels_air | share::load(pool, lanes, particles, lattice.order(), free, *instructions);
+    let is_pushed = feels_air | share::load(pool, lanes, particles, lattice.order(), free, *simd_level);
     Loaded { is_pushed, has_moved: !is_pushed }
 }
 

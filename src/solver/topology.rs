@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use bevy::math::Vec3;
 
-use super::{Braid, Lattice, Level, SelfCollision, contact::surface::Surface, order::Order};
+use super::{StrandPack, Lattice, Level, SelfCollision, contact::surface::TriangleBvh, order::Order};
 
 /// Distance between balls at the particles that nothing gets through, as a share of the mean edge: of a square cell, a corner is
 /// 0.71 of its side from the middle, and the mean edge, diagonals too, is 1.14 of it.
@@ -136,7 +136,7 @@ pub struct SpringBatch {
     pub kind: SpringKind,
     /// Their place in [`Topology::springs`].
     pub range: Range<usize>,
-    /// Whether [`Topology::lattice`] or [`Topology::braids`] have them too: [`Method::Strands`](super::Method::Strands)
+    /// Whether [`Topology::lattice`] or [`Topology::strand_packs`] have them too: [`Method::Strands`](super::Method::Strands)
     /// solves them there.
     pub woven: bool,
     /// Whether any of them carries a part of a sheet's moduli.
@@ -175,11 +175,11 @@ pub struct Topology {
     /// The rows and columns that all particles are in, where they are in rows and columns.
     pub lattice: Option<Lattice>,
     /// The threads of a regular mesh without a lattice, in the order in which the solver visits them.
-    pub braids: Vec<Braid>,
+    pub strand_packs: Vec<StrandPack>,
     /// Coarse lattices, the coarsest first.
     pub levels: Vec<Level>,
     /// Triangles, corners and edges to be found by what touches them.
-    pub(crate) surface: OnceLock<Surface>,
+    pub(crate) surface: OnceLock<TriangleBvh>,
 }
 
 impl Topology {
@@ -189,8 +189,8 @@ impl Topology {
     }
 
     /// Triangles, corners and edges to be found by what touches them: sorted when that is asked for first.
-    pub(super) fn surface(&self) -> &Surface {
-        self.surface.get_or_init(|| Surface::new(&self.rest, &self.triangles))
+    pub(super) fn surface(&self) -> &TriangleBvh {
+        self.surface.get_or_init(|| TriangleBvh::new(&self.rest, &self.triangles))
     }
 
     /// Distance that parts of the cloth keep from each other, m, where that of the settings is `distance`: balls at its

@@ -2,14 +2,14 @@
 
 use core::fmt;
 
-use super::{Braid, Topology};
+use super::{StrandPack, Topology};
 
 /// How a cloth's springs are solved by [`Method::Strands`](super::Method::Strands). Written out, it is a text such as
 /// "64 rows, 64 columns", "190 threads" or "springs in 14 colours".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Weave {
+pub enum MeshStructure {
     /// As rows and columns: the mesh is one rectangle, or a tube.
-    Lattice {
+    Grid {
         /// Number of rows.
         rows: usize,
         /// Number of columns.
@@ -18,37 +18,37 @@ pub enum Weave {
         closed: bool,
     },
     /// As threads that go straight on from edge to edge: the mesh is regular.
-    Threads {
+    Strands {
         /// Number of threads.
         count: usize,
     },
     /// One by one, those that share no particle side by side: the mesh is irregular.
-    Springs {
+    Unstructured {
         /// Number of groups that share no particle.
         colors: usize,
     },
 }
 
-impl fmt::Display for Weave {
+impl fmt::Display for MeshStructure {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Lattice { rows, columns, closed: false } => write!(f, "{rows} rows, {columns} columns"),
-            Self::Lattice { rows, columns, closed: true } => write!(f, "{rows} rings, {columns} columns"),
-            Self::Threads { count } => write!(f, "{count} threads"),
-            Self::Springs { colors } => write!(f, "springs in {colors} colours"),
+            Self::Grid { rows, columns, closed: false } => write!(f, "{rows} rows, {columns} columns"),
+            Self::Grid { rows, columns, closed: true } => write!(f, "{rows} rings, {columns} columns"),
+            Self::Strands { count } => write!(f, "{count} threads"),
+            Self::Unstructured { colors } => write!(f, "springs in {colors} colours"),
         }
     }
 }
 
 impl Topology {
     /// What the mesh was found to be.
-    pub fn weave(&self) -> Weave {
+    pub fn structure(&self) -> MeshStructure {
         match &self.lattice {
             Some(lattice) => {
-                Weave::Lattice { rows: lattice.rows, columns: lattice.columns, closed: lattice.along_rows.closed }
+                MeshStructure::Grid { rows: lattice.rows, columns: lattice.columns, closed: lattice.along_rows.closed }
             }
-            None if self.braids.is_empty() => Weave::Springs { colors: self.batches.len() },
-            None => Weave::Threads { count: self.braids.iter().map(Braid::thread_count).sum() },
+            None if self.strand_packs.is_empty() => MeshStructure::Unstructured { colors: self.batches.len() },
+            None => MeshStructure::Strands { count: self.strand_packs.iter().map(StrandPack::thread_count).sum() },
         }
     }
 }

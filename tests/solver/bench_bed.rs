@@ -11,8 +11,8 @@ use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothSprings, Fabric},
     solver::{
-        Anchor, Effort, Elasticity, Grab, Material, Method, Mount, Mounted, Obstacle, Particles, Scratch,
-        SelfCollision, StepContext, StepReport, Tethers, Topology, WindSource, step,
+        AttachedPin, BodyAttachment, Elasticity, Grab, Material, Method, Obstacle, Particles, PinMotion, Scratch,
+        SelfCollision, StepContext, StepReport, SubstepPolicy, Tethers, Topology, WindSource, step,
     },
 };
 
@@ -30,16 +30,16 @@ pub struct Bed {
     pub topology: Topology,
     pub particles: Particles,
     pub material: Material,
-    pub anchors: Vec<Anchor>,
-    pub mounts: Vec<Mount>,
-    pub mounted: Vec<Mounted>,
+    pub pin_motions: Vec<PinMotion>,
+    pub mounts: Vec<BodyAttachment>,
+    pub mounted: Vec<AttachedPin>,
     pub grabs: Vec<Grab>,
     pub tethers: Option<Tethers>,
     pub tether_slack: f32,
     pub obstacles: Vec<Obstacle>,
     pub winds: Vec<WindSource>,
     pub method: Method,
-    pub effort: Effort,
+    pub effort: SubstepPolicy,
     pub max_substeps: u32,
     pub max_velocity: f32,
     pub margin: f32,
@@ -76,7 +76,7 @@ impl Bed {
             particles: Particles::at_rest(rest, &topology, &material),
             topology,
             material,
-            anchors: Vec::new(),
+            pin_motions: Vec::new(),
             mounts: Vec::new(),
             mounted: Vec::new(),
             grabs: Vec::new(),
@@ -85,7 +85,7 @@ impl Bed {
             obstacles: Vec::new(),
             winds: Vec::new(),
             method: Method::Strands,
-            effort: Effort::fixed(8, Vec::new()),
+            effort: SubstepPolicy::fixed(8, Vec::new()),
             max_substeps: 4096,
             max_velocity: 100.0,
             margin: 0.0,
@@ -107,7 +107,7 @@ impl Bed {
         for particle in particles {
             let place = self.particles.position[particle as usize];
             self.particles.inverse_mass[particle as usize] = 0.0;
-            self.anchors.push(Anchor { particle, start: place, end: place });
+            self.pin_motions.push(PinMotion { particle, start: place, end: place });
         }
         self
     }
@@ -124,21 +124,21 @@ impl Bed {
         // Strands come after the tethers, and fight those that give nothing; the others keep what they were tested with.
         self.tether_slack = if method == Method::Strands { 0.005 } else { 0.0 };
         self.effort = match method {
-            Method::Strands => Effort::to_hold(0.01, &self.topology),
-            Method::Xpbd | Method::Explicit => Effort::fixed(8, Vec::new()),
+            Method::Strands => SubstepPolicy::to_hold(0.01, &self.topology),
+            Method::Xpbd | Method::Explicit => SubstepPolicy::fixed(8, Vec::new()),
         };
         self
     }
 
     /// All levels that may go with one substep, whatever the substeps. Only strands have any.
     pub fn with_levels(mut self) -> Self {
-        self.effort = Effort::fixed(self.effort.substeps, Effort::levels_for(1, &self.topology));
+        self.effort = SubstepPolicy::fixed(self.effort.substeps, SubstepPolicy::levels_for(1, &self.topology));
         self
     }
 
     /// So many substeps, without levels.
     pub fn with_substeps(mut self, substeps: u32) -> Self {
-        self.effort = Effort::fixed(substeps, Vec::new());
+        self.effort = SubstepPolicy::fixed(substeps, Vec::new());
         self
     }
 
@@ -152,7 +152,7 @@ impl Bed {
             max_substeps: self.max_substeps,
             material: self.material,
             gravity: self.gravity,
-            anchors: &self.anchors,
+            pin_motions: &self.pin_motions,
             mounts: &self.mounts,
             mounted: &self.mounted,
             grabs: &self.grabs,

@@ -3,7 +3,7 @@
 use bevy::{math::Vec3A, prelude::*};
 use bevy_drape::{
     prelude::{ClothGrid, ClothSprings},
-    solver::{Effort, LevelPass, Method, level::Transfer, measure},
+    solver::{LevelPass, Method, SubstepPolicy, level::TransferOperator, measure},
 };
 
 use crate::{
@@ -38,7 +38,7 @@ fn levels_of_an_irregular_mesh_move_particles_between_their_nodes() {
     let topology = topology(strewn(40));
     assert!(topology.lattice.is_none() && topology.levels.len() > 1);
     for level in &topology.levels {
-        let Transfer::Chart { nodes, particles } = &level.transfer else { panic!("{:?}", level.transfer) };
+        let TransferOperator::Chart { nodes, particles } = &level.transfer else { panic!("{:?}", level.transfer) };
         for (corners, weights) in nodes.iter().filter(|(_, weights)| *weights != [0.0; 3]) {
             assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5 && weights.iter().all(|&weight| weight >= 0.0));
             assert!(corners.iter().all(|&corner| (corner as usize) < topology.particle_count()));
@@ -77,7 +77,7 @@ fn largest_strain(bed: &Bed) -> f32 {
 
 /// The same after three seconds in single steps.
 fn swung(mut bed: Bed) -> Bed {
-    bed.effort = Effort::fixed(1, bed.effort.levels);
+    bed.effort = SubstepPolicy::fixed(1, bed.effort.levels);
     bed.run(3.0);
     bed
 }
@@ -104,10 +104,10 @@ fn levels_leave_a_cloth_alone_that_is_nowhere_too_long() {
     let turn = Quat::from_rotation_z(0.3);
     let pressed = |bed: Bed| {
         let mut bed = Bed { gravity: Vec3A::ZERO, ..bed };
-        bed.effort = Effort::fixed(1, bed.effort.levels);
+        bed.effort = SubstepPolicy::fixed(1, bed.effort.levels);
         bed.material = springs(ClothSprings::default());
         bed.particles.position.iter_mut().for_each(|p| *p = turn * *p * 0.9);
-        for anchor in &mut bed.anchors {
+        for anchor in &mut bed.pin_motions {
             anchor.start = bed.particles.position[anchor.particle as usize];
             anchor.end = anchor.start;
         }
@@ -139,7 +139,7 @@ fn an_effort_leaves_a_soft_cloth_without_tethers_the_stretch_of_its_weight() {
         let bed = Bed::new(ClothGrid::new(1.0, 1.0, 32, 32), springs(constants));
         let expected = sunk(Bed { method: Method::Explicit, ..bed.clone() });
         for max_strain in [0.005, 0.001] {
-            let effort = Effort::to_hold(max_strain, &bed.topology);
+            let effort = SubstepPolicy::to_hold(max_strain, &bed.topology);
             let (substeps, levels) = (effort.substeps, effort.levels.len());
             let depth = sunk(Bed { effort, ..bed.clone() });
             let case = format!("{stiffness} N/m, {substeps} substeps, {levels} levels: {depth} for {expected} m");
@@ -154,7 +154,7 @@ fn an_effort_leaves_a_soft_cloth_without_tethers_the_stretch_of_its_weight() {
 fn a_level_that_the_cloth_has_not_or_of_no_iterations_changes_nothing() {
     let after = |levels: Vec<LevelPass>| {
         let mut bed = hung(grid(20));
-        bed.effort = Effort::fixed(2, levels);
+        bed.effort = SubstepPolicy::fixed(2, levels);
         bed.run(0.5);
         bed.particles
     };

@@ -5,7 +5,7 @@ use core::f32::consts::TAU;
 use bevy::math::{Mat3A, Quat, Vec3A};
 use bevy_drape::{
     prelude::{ClothGrid, Fabric},
-    solver::{Body, Method, Mount, Mounted},
+    solver::{AttachedPin, Body, BodyAttachment, Method},
 };
 
 use crate::bench_bed::{ALL, Bed, GRAVITY, STABLE, bare};
@@ -38,18 +38,18 @@ impl Ball {
         self.velocity += bed.gravity * dt;
         self.centre += self.velocity * dt;
         self.turn = (Quat::from_scaled_axis((self.spin * dt).into()) * self.turn).normalize();
-        let world = bed.anchors.len() - bed.mounted.len();
+        let world = bed.pin_motions.len() - bed.mounted.len();
         bed.mounted.clear();
         for (k, &(particle, arm)) in arms.iter().enumerate() {
-            let anchor = &mut bed.anchors[world + k];
+            let anchor = &mut bed.pin_motions[world + k];
             assert_eq!(anchor.particle, particle);
             anchor.start = bed.particles.position[particle as usize];
             anchor.end = self.centre + self.turn * arm;
-            bed.mounted.push(Mounted { anchor: (world + k) as u32, mount: 0 });
+            bed.mounted.push(AttachedPin { anchor: (world + k) as u32, mount: 0 });
         }
         let inverse_inertia = Mat3A::from_diagonal(Vec3A::splat(1.0 / self.inertia()).into());
         let body = Body { inverse_mass: 1.0 / self.mass, inverse_inertia, centre: before.centre };
-        bed.mounts = vec![Mount { body, way: self.centre - before.centre }];
+        bed.mounts = vec![BodyAttachment { body, way: self.centre - before.centre }];
         bed.step(dt);
         let (push, stray) = bed.scratch.pulls()[0];
         self.velocity += push.linear / self.mass;
@@ -68,7 +68,7 @@ fn on_a_ball(mut bed: Bed, particles: &[u32], ball: &Ball) -> (Bed, Vec<(u32, Ve
     let arms: Vec<_> = particles.iter().map(|&i| (i, bed.particles.position[i as usize] - ball.centre)).collect();
     bed = bed.pinned(particles.iter().copied());
     for &(anchor, _) in &arms {
-        bed.mounted.push(Mounted { anchor, mount: 0 });
+        bed.mounted.push(AttachedPin { anchor, mount: 0 });
     }
     (bed, arms)
 }
@@ -196,7 +196,7 @@ fn a_feather_on_the_whole_edge_of_a_heavy_cloth_stays_finite() {
             let (bed, arms) = on_a_ball(bed, &edge, &ball);
             let mut bed = bed.pinned([16 * 17 + 16]);
             // Those of the ball come last.
-            bed.anchors.rotate_right(1);
+            bed.pin_motions.rotate_right(1);
             for _ in 0..240 {
                 ball.step(&mut bed, &arms, STEP);
                 assert!(ball.centre.is_finite() && bed.particles.is_finite(), "{method:?}: {ball:?}");

@@ -2,7 +2,7 @@
 
 use bevy_drape::{
     prelude::ClothSprings,
-    solver::{Effort, Material, Method},
+    solver::{Material, Method, SubstepPolicy},
 };
 
 use crate::bench_bed::{Bed, STABLE, rms, springs_in_air};
@@ -11,7 +11,7 @@ use crate::bench_bed::{Bed, STABLE, rms, springs_in_air};
 fn hung(method: Method, rate: f32, substeps: u32) -> Bed {
     let material = Material { damping: 3.0, ..springs_in_air(ClothSprings::default()) };
     let bed = Bed::lying(16, material).pinned([0, 15]).tethered(&[0, 15]);
-    let effort = Effort::fixed(substeps, Effort::levels_for(substeps, &bed.topology));
+    let effort = SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, &bed.topology));
     let mut bed = Bed { method, effort, ..bed };
     for _ in 0..(8.0 * rate) as u32 {
         bed.step(1.0 / rate);

@@ -3,7 +3,7 @@
 use bevy::{math::Vec3A, prelude::*};
 use bevy_drape::{
     prelude::{ClothGrid, ClothSprings},
-    solver::{Effort, LevelPass, Material, Method, SpringKind, constraint::spring::strain},
+    solver::{LevelPass, Material, Method, SpringKind, SubstepPolicy, constraint::spring::strain},
 };
 use proptest::prelude::*;
 
@@ -35,7 +35,7 @@ proptest! {
         let material = Material { density, ..springs_in_air(constants) };
         let bed = Bed::new(ClothGrid::new(1.0, 1.0, 17, 9), material);
         let mut bed = bed.pinned([0, 16]).tethered(&[0, 16]);
-        bed.effort = Effort::fixed(substeps, vec![LevelPass { stride: 4, iterations }]);
+        bed.effort = SubstepPolicy::fixed(substeps, vec![LevelPass { stride: 4, iterations }]);
         bed.max_substeps = 200;
         bed.method = ALL[method];
         for (position, place) in bed.particles.position.iter_mut().zip(places).skip(17) {
@@ -58,9 +58,9 @@ fn hung(method: Method, n: u32, constants: ClothSprings) -> Bed {
 
 /// Takes the second pin by `way` within the next step.
 fn jerk(bed: &mut Bed, way: Vec3A, dt: f32) {
-    bed.anchors[1].end += way;
+    bed.pin_motions[1].end += way;
     bed.step(dt);
-    bed.anchors[1].start = bed.anchors[1].end;
+    bed.pin_motions[1].start = bed.pin_motions[1].end;
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_cloth_crushed_to_a_point_opens_again() {
         let corner = bed.particles.position[0];
         bed.particles.position.fill(corner);
         bed.particles.position.iter_mut().enumerate().for_each(|(i, p)| p.x += 1e-5 * i as f32);
-        bed.anchors[0].end = bed.anchors[0].start;
+        bed.pin_motions[0].end = bed.pin_motions[0].start;
         bed.run(3.0);
         assert!(bed.particles.is_finite());
         let structural = bed.topology.springs_of(SpringKind::Structural);

@@ -8,7 +8,7 @@ use bevy::{
     mesh::{Indices, Mesh, PrimitiveTopology},
     utils::default,
 };
-use bevy_drape::solver::{Elasticity, Instructions, Material, Method, Moduli, SpringConstants, Topology, measure};
+use bevy_drape::solver::{Elasticity, Material, Method, Moduli, SimdLevel, SpringConstants, Topology, measure};
 use proptest::prelude::*;
 
 use crate::bench_bed::{ALL, Bed, GRAVITY, STABLE, bits, rms};
@@ -220,7 +220,7 @@ fn all_instructions_give_the_same_bits_and_nothing_is_allocated() {
             let material = sheet(0.2, Moduli { stretch_damping: damping, bend_damping: damping, ..JERSEY });
             let mut bed = Bed::new(mesh(&strewn(0.1 * PI, 0.1, 0.02), place), material).pinned([0, 5]);
             let mut plain = bed.clone();
-            plain.scratch.instructions = Instructions::Baseline;
+            plain.scratch.simd_level = SimdLevel::Baseline;
             bed.run(0.5);
             plain.run(0.5);
             assert_eq!(bits(&bed.particles), bits(&plain.particles));

@@ -15,7 +15,7 @@ fn carried(method: Method, carried: Vec3A) -> Bed {
     let material = Material { damping: 0.0, ..springs_in_air(ClothSprings::default()) };
     let bed = Bed::lying(16, material).pinned([0, 15]).tethered(&[0, 15]).with_levels();
     let mut bed = Bed { method, max_velocity: 50.0, fluid_density: 0.0, ..bed };
-    bed.anchors.iter_mut().for_each(|anchor| anchor.end = anchor.start + carried * FRAME);
+    bed.pin_motions.iter_mut().for_each(|anchor| anchor.end = anchor.start + carried * FRAME);
     bed.particles.velocity.fill(carried);
     bed
 }
@@ -49,7 +49,7 @@ fn a_particle_shot_at_a_thousand_metres_a_second_is_held_back() {
 fn a_cloth_without_tethers_or_pins_is_held_back_too() {
     for method in STABLE {
         let mut bed = carried(method, Vec3A::ZERO);
-        (bed.tethers, bed.anchors) = (None, Vec::new());
+        (bed.tethers, bed.pin_motions) = (None, Vec::new());
         bed.particles.set_masses(&bed.topology, &bed.material, |_| false);
         bed.particles.velocity.fill(Vec3A::Z * 1000.0);
         bed.step(FRAME);
@@ -65,7 +65,7 @@ fn a_cloth_that_is_carried_faster_than_the_limit_comes_along() {
         let mut bed = carried(method, pins);
         for _ in 0..60 {
             bed.step(FRAME);
-            bed.anchors.iter_mut().for_each(|anchor| {
+            bed.pin_motions.iter_mut().for_each(|anchor| {
                 let way = anchor.end - anchor.start;
                 (anchor.start, anchor.end) = (anchor.end, anchor.end + way);
             });

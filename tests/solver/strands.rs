@@ -6,7 +6,7 @@ use bevy::{
 };
 use bevy_drape::{
     prelude::{ClothGrid, ClothSprings},
-    solver::{Effort, Method, Obstacle, Solid, SpringKind, measure},
+    solver::{Method, Obstacle, Solid, SpringKind, SubstepPolicy, measure},
 };
 
 use crate::bench_bed::{ALL, Bed, GRAVITY, STABLE, springs, springs_in_air};
@@ -130,7 +130,7 @@ fn the_effort_to_hold_a_strain_holds_it() {
     let mut failures = Vec::new();
     for (n, max_strain) in [(32, 0.01), (64, 0.01), (32, 0.005)] {
         let mut bed = hung(n);
-        bed.effort = Effort::to_hold(max_strain, &bed.topology);
+        bed.effort = SubstepPolicy::to_hold(max_strain, &bed.topology);
         bed.run(4.0);
         // The mean over a second, as the lab measures it.
         let strains = (0..60).map(|_| {
@@ -170,7 +170,7 @@ fn a_hung_cloth_comes_to_rest() {
 
 #[test]
 fn less_strain_takes_no_fewer_substeps_and_a_finer_mesh_neither() {
-    let substeps = |n, max_strain| Effort::to_hold(max_strain, &hung(n).topology).substeps;
+    let substeps = |n, max_strain| SubstepPolicy::to_hold(max_strain, &hung(n).topology).substeps;
     let by_strain = [0.1, 0.02, 0.01, 0.005, 0.001, 1e-6].map(|max_strain| substeps(32, max_strain));
     assert!(by_strain.is_sorted() && by_strain[0] == 2 && by_strain[4] > 2 * by_strain[2], "{by_strain:?}");
     let by_size = [2, 16, 64, 128].map(|n| substeps(n, 0.005));
@@ -185,7 +185,7 @@ fn more_substeps_are_taken_near_an_obstacle_and_without_tethers() {
         vec![Obstacle::still(shape, pose)]
     };
     let mut bed = hung(16);
-    bed.effort = Effort::to_hold(0.1, &bed.topology);
+    bed.effort = SubstepPolicy::to_hold(0.1, &bed.topology);
     bed.obstacles = ground(-3.0);
     assert_eq!(bed.step(FRAME).substeps, 2);
     let tethers = bed.tethers.take();
@@ -202,7 +202,7 @@ fn more_substeps_are_taken_near_an_obstacle_and_without_tethers() {
         last_before_contact = report.substeps;
     }
     assert_eq!(last_before_contact, 8, "they are more before it touches");
-    bed.effort = Effort::fixed(2, bed.effort.levels);
+    bed.effort = SubstepPolicy::fixed(2, bed.effort.levels);
     assert_eq!(bed.step(FRAME).substeps, 2, "by hand they are as many everywhere");
     bed.method = Method::Xpbd;
     assert_eq!(bed.step(FRAME).substeps, 2);

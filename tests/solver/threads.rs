@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use bevy::{math::ops, prelude::*};
 use bevy_drape::{
     prelude::{ClothGrid, ClothSprings},
-    solver::{Effort, Method, SpringKind, Topology, Weave, measure},
+    solver::{MeshStructure, Method, SpringKind, SubstepPolicy, Topology, measure},
 };
 use fastrand::Rng;
 
@@ -76,7 +76,7 @@ type Key = (u32, u32, u32);
 fn braided(topology: &Topology) -> [BTreeSet<Key>; 2] {
     let nobody = topology.particle_count() as u32;
     let [mut along, mut across] = [BTreeSet::new(), BTreeSet::new()];
-    for braid in &topology.braids {
+    for braid in &topology.strand_packs {
         let count = braid.nodes.len();
         for lane in 0..8 {
             let particle = |j: usize| braid.nodes[j % count][lane];
@@ -108,7 +108,7 @@ pub fn assert_shared_out(topology: &Topology) {
     assert_eq!(across, keys(topology, SpringKind::Bend, true));
     assert!(keys(topology, SpringKind::Shear, true).is_empty());
     let nobody = topology.particle_count() as u32;
-    for braid in &topology.braids {
+    for braid in &topology.strand_packs {
         let mut seen = BTreeSet::new();
         let particles = braid.nodes.as_flattened().iter().filter(|&&particle| particle != nobody);
         assert!(particles.copied().all(|particle| seen.insert(particle)), "threads of a braid meet");
@@ -117,8 +117,8 @@ pub fn assert_shared_out(topology: &Topology) {
 }
 
 fn thread_count(topology: &Topology) -> usize {
-    match topology.weave() {
-        Weave::Threads { count } => count,
+    match topology.structure() {
+        MeshStructure::Strands { count } => count,
         other => panic!("{other}"),
     }
 }
@@ -136,7 +136,7 @@ fn regular_meshes_have_all_their_structural_springs_on_threads() {
     ];
     for (name, mesh, threads) in cases {
         let topology = topology(mesh);
-        println!("{name}: {}", topology.weave());
+        println!("{name}: {}", topology.structure());
         assert_shared_out(&topology);
         assert_eq!(keys(&topology, SpringKind::Structural, false).len(), 0, "{name}");
         assert_eq!(thread_count(&topology), threads, "{name}");
@@ -154,7 +154,7 @@ fn threads_of_quads_bend_and_those_of_triangles_bend_across_their_edges() {
 #[test]
 fn rings_are_closed() {
     let topology = topology(sleeve(24, 20));
-    let rings: Vec<_> = topology.braids.iter().filter(|braid| braid.closed).collect();
+    let rings: Vec<_> = topology.strand_packs.iter().filter(|braid| braid.closed).collect();
     assert_eq!(rings.iter().map(|braid| braid.thread_count()).sum::<usize>(), 20);
     for ring in rings {
         assert_eq!((ring.nodes.len(), ring.spring_count()), (24, 24 * ring.thread_count()));
@@ -198,8 +198,8 @@ fn irregular_meshes_have_no_threads_and_neither_have_tiny_ones_and_fans() {
     ];
     for (name, mesh) in meshes {
         let topology = topology(mesh);
-        assert!(topology.braids.is_empty() && topology.batches.iter().all(|batch| !batch.woven), "{name}");
-        assert!(matches!(topology.weave(), Weave::Springs { .. }), "{name}");
+        assert!(topology.strand_packs.is_empty() && topology.batches.iter().all(|batch| !batch.woven), "{name}");
+        assert!(matches!(topology.structure(), MeshStructure::Unstructured { .. }), "{name}");
     }
 }
 
@@ -213,7 +213,7 @@ fn whatever_is_left_of_a_sheet_has_every_spring_once() {
         missing[9 * 20 + 9] = true;
         let topology = topology(quads(20, |row, column| !missing[(row * 20 + column) as usize]));
         assert_shared_out(&topology);
-        woven += usize::from(!topology.braids.is_empty());
+        woven += usize::from(!topology.strand_packs.is_empty());
     }
     assert!(woven > 10, "{woven} of 60");
 }
@@ -230,7 +230,7 @@ fn hung(mesh: Mesh) -> Bed {
 
 /// The same cloth with its threads taken apart.
 fn unravelled(mut bed: Bed) -> Bed {
-    bed.topology.braids.clear();
+    bed.topology.strand_packs.clear();
     bed.topology.batches.iter_mut().for_each(|batch| batch.woven = false);
     bed
 }
@@ -268,7 +268,7 @@ fn threads_move_as_the_textbook_says_when_steps_are_small() {
             ..ClothSprings::default()
         };
         let bed = Bed { tethers: None, material: springs(soft), ..hung(lying(mesh.clone())) }.with_substeps(64);
-        assert!(!bed.topology.braids.is_empty(), "{name}");
+        assert!(!bed.topology.strand_packs.is_empty(), "{name}");
         let explicit = Bed { method: Method::Explicit, ..bed.clone() };
         let [strands, springs, explicit] = [bed.clone(), unravelled(bed.clone()), explicit].map(|mut bed| {
             bed.run(0.25);
@@ -290,7 +290,7 @@ fn the_effort_to_hold_a_strain_holds_it_on_threads() {
         let mut bed = hung(ell(side));
         bed.material = springs_in_air(ClothSprings::default());
         bed.tether_slack = 0.002;
-        bed.effort = Effort::to_hold(max_strain, &bed.topology);
+        bed.effort = SubstepPolicy::to_hold(max_strain, &bed.topology);
         assert!(bed.effort.levels.is_empty());
         bed.run(3.0);
         let strains = (0..60).map(|_| {
@@ -313,6 +313,6 @@ fn a_mesh_says_what_it_was_found_to_be() {
         (Triangle3d::default().into(), "springs in 3 colours"),
     ];
     for (mesh, text) in texts {
-        assert_eq!(topology(mesh).weave().to_string(), text);
+        assert_eq!(topology(mesh).structure().to_string(), text);
     }
 }

@@ -8,8 +8,8 @@ use bevy_drape::{
     build,
     prelude::Fabric,
     solver::{
-        Anchor, Effort, Material, Method, Obstacle, Particles, Scratch, SelfCollision, StepContext, Tethers, Topology,
-        step,
+        Material, Method, Obstacle, Particles, PinMotion, Scratch, SelfCollision, StepContext, SubstepPolicy, Tethers,
+        Topology, step,
     },
 };
 
@@ -30,7 +30,7 @@ pub struct Bed {
     pub topology: Topology,
     pub particles: Particles,
     pub material: Material,
-    pub anchors: Vec<Anchor>,
+    pub pin_motions: Vec<PinMotion>,
     pub obstacles: Vec<Obstacle>,
     pub method: Method,
     pub substeps: u32,
@@ -65,7 +65,7 @@ impl Bed {
             particles: Particles::at_rest(rest, &topology, &material),
             topology,
             material,
-            anchors: Vec::new(),
+            pin_motions: Vec::new(),
             obstacles: Vec::new(),
             method: Method::Strands,
             substeps: 8,
@@ -90,14 +90,14 @@ impl Bed {
         for particle in self.chosen(is_pinned) {
             let place = self.particles.position[particle];
             self.particles.inverse_mass[particle] = 0.0;
-            self.anchors.push(Anchor { particle: particle as u32, start: place, end: place });
+            self.pin_motions.push(PinMotion { particle: particle as u32, start: place, end: place });
         }
         self
     }
 
     /// Ties all particles to those that are fixed, as a game does.
     pub fn tethered(mut self) -> Self {
-        let pins: Vec<u32> = self.anchors.iter().map(|anchor| anchor.particle).collect();
+        let pins: Vec<u32> = self.pin_motions.iter().map(|anchor| anchor.particle).collect();
         self.tethers = Some(build::tethers(&self.topology, &pins));
         self
     }
@@ -110,7 +110,7 @@ impl Bed {
 
     /// One step.
     pub fn step(&mut self) {
-        let effort = Effort::fixed(self.substeps, Vec::new());
+        let effort = SubstepPolicy::fixed(self.substeps, Vec::new());
         let ctx = StepContext {
             dt: self.dt,
             method: self.method,
@@ -118,7 +118,7 @@ impl Bed {
             max_substeps: u32::MAX,
             material: self.material,
             gravity: self.gravity,
-            anchors: &self.anchors,
+            pin_motions: &self.pin_motions,
             mounts: &[],
             mounted: &[],
             grabs: &[],

@@ -1,7 +1,7 @@
 //! One cloth of a scene, and what it hangs by.
 
 use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::solver::{Anchor, Effort, Particles, Scratch, Tethers, Topology};
+use bevy_drape::solver::{Particles, PinMotion, Scratch, SubstepPolicy, Tethers, Topology};
 
 /// A cloth.
 pub struct Cloth {
@@ -17,9 +17,9 @@ pub struct Cloth {
 
 /// What a cloth hangs by, and how much work is made for it.
 pub struct Rig {
-    pub anchors: Vec<Anchor>,
+    pub pin_motions: Vec<PinMotion>,
     pub tethers: Option<Tethers>,
-    pub effort: Effort,
+    pub effort: SubstepPolicy,
 }
 
 impl Cloth {
@@ -44,13 +44,13 @@ impl Cloth {
         for &particle in pins {
             let place = self.particles.position[particle as usize];
             self.particles.inverse_mass[particle as usize] = 0.0;
-            self.rig.anchors.push(Anchor { particle, start: place, end: place });
+            self.rig.pin_motions.push(PinMotion { particle, start: place, end: place });
         }
     }
 
     /// Leads all that is held to where `place` says for its place at rest, within the next frame.
     pub fn lead(&mut self, place: impl Fn(Vec3) -> Vec3A) {
-        for anchor in &mut self.rig.anchors {
+        for anchor in &mut self.rig.pin_motions {
             anchor.start = anchor.end;
             anchor.end = place(self.topology.rest[anchor.particle as usize]);
         }

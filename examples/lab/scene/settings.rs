@@ -10,8 +10,8 @@ use bevy_drape::{
     build,
     prelude::ClothGrid,
     solver::{
-        Effort, Elasticity, LevelPass, Material, Method, Particles, Scratch, SelfCollision, SpringConstants,
-        SpringKind, Topology,
+        Elasticity, LevelPass, Material, Method, Particles, Scratch, SelfCollision, SpringConstants, SpringKind,
+        SubstepPolicy, Topology,
     },
 };
 
@@ -67,15 +67,17 @@ impl Settings {
     }
 
     /// Substeps and levels for a mesh.
-    pub fn effort(&self, topology: &Topology) -> Effort {
+    pub fn effort(&self, topology: &Topology) -> SubstepPolicy {
         let mut effort = match (self.method, self.substeps) {
-            (Method::Strands, None) => Effort::to_hold(self.max_strain, topology),
-            (Method::Strands, Some(substeps)) => Effort::fixed(substeps, Effort::levels_for(substeps, topology)),
-            (_, substeps) => Effort::fixed(substeps.unwrap_or(8), Vec::new()),
+            (Method::Strands, None) => SubstepPolicy::to_hold(self.max_strain, topology),
+            (Method::Strands, Some(substeps)) => {
+                SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, topology))
+            }
+            (_, substeps) => SubstepPolicy::fixed(substeps.unwrap_or(8), Vec::new()),
         };
         if let Some(levels) = &self.levels {
             effort.levels.clone_from(levels);
-            effort.careful_levels.clone_from(levels);
+            effort.contact_levels.clone_from(levels);
         }
         effort
     }
@@ -108,7 +110,7 @@ impl Settings {
         let rest = topology.rest.iter().copied().map(Vec3A::from).collect();
         Ok(Cloth {
             particles: Particles::at_rest(rest, &topology, &self.material),
-            rig: Rig { anchors: Vec::new(), tethers: None, effort: self.effort(&topology) },
+            rig: Rig { pin_motions: Vec::new(), tethers: None, effort: self.effort(&topology) },
             scratch: Scratch::default(),
             topology,
             build_ms,

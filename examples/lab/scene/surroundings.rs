@@ -25,7 +25,7 @@ impl Surroundings {
             max_substeps: u32::MAX,
             material: settings.material,
             gravity: Vec3A::NEG_Y * 9.81,
-            anchors: &rig.anchors,
+            pin_motions: &rig.pin_motions,
             mounts: &[],
             mounted: &[],
             grabs: &[],

@@ -10,7 +10,7 @@
 use bevy::prelude::*;
 
 use super::by_strides;
-use crate::solver::{Between, Lattice, Level, level::Transfer};
+use crate::solver::{LinearWeights, Lattice, Level, level::TransferOperator};
 
 /// Parts that the way from node to node is cut into to be measured along the cloth.
 const PARTS: usize = 4;
@@ -123,7 +123,7 @@ impl<'a> Map<'a> {
         let present = nodes.iter().filter(|(_, weights)| *weights != [0.0; 3]).count();
         let particles = self.chart.iter().map(|&at| around(at, &rows, &columns, &lattice, &nodes)).collect();
         let share = self.rest.len() as f32 / present.max(1) as f32;
-        let transfer = Transfer::Chart { nodes, particles };
+        let transfer = TransferOperator::Chart { nodes, particles };
         Level { stride: stride as u32, lattice, rows, columns, ring: None, share, from_coarser: None, transfer }
     }
 
@@ -149,7 +149,7 @@ impl<'a> Map<'a> {
 
 /// Slots of the nodes around a place of the chart, and its shares of those that are there.
 fn around(at: Vec2, rows: &[f32], columns: &[f32], lattice: &Lattice, nodes: &[InTriangle]) -> ([u32; 4], [f32; 4]) {
-    let (down, along) = (Between::locate(rows, at.y), Between::locate(columns, at.x));
+    let (down, along) = (LinearWeights::locate(rows, at.y), LinearWeights::locate(columns, at.x));
     let corner = |row: u32, column: u32| {
         let slot = lattice.order().slot_at((down.first + row) as usize, (along.first + column) as usize);
         let is_there = nodes[slot].1 != [0.0; 3];

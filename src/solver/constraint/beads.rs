@@ -6,22 +6,22 @@ use super::spring::End;
 use crate::solver::{
     Lanes,
     lanes::{apart, together},
-    simd::{Instructions, LANES, Vec3x8, lane},
+    simd::{SimdLevel, LANES, Vec3x8, lane},
 };
 
 /// The particles one by one: what constraints between any of them read and write.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Beads {
+pub(in crate::solver) struct GatheredParticles {
     /// Position, m, and inverse mass, 1/kg.
     pub now: Vec<[f32; 4]>,
     /// Position before the substep, m; only where something is damped.
     pub before: Vec<[f32; 4]>,
 }
 
-impl Beads {
+impl GatheredParticles {
     /// Takes over where the particles are, and where something `is_damped` also where they were before the substep.
-    pub fn read(&mut self, lanes: &Lanes, is_damped: bool, instructions: Instructions) {
-        let level = instructions.level();
+    pub fn read(&mut self, lanes: &Lanes, is_damped: bool, simd_level: SimdLevel) {
+        let level = simd_level.level();
         if is_damped {
             dispatch!(level, simd => self.read_blocks::<_, true>(simd, lanes));
         } else {
@@ -30,12 +30,12 @@ impl Beads {
     }
 
     /// Hands back where they are.
-    pub fn write(&self, lanes: &mut Lanes, instructions: Instructions) {
-        dispatch!(instructions.level(), simd => self.write_blocks(simd, lanes));
+    pub fn write(&self, lanes: &mut Lanes, simd_level: SimdLevel) {
+        dispatch!(simd_level.level(), simd => self.write_blocks(simd, lanes));
     }
 
     /// The particle that is where one is missing: fixed, and joined to nothing else.
-    pub fn nobody(&self) -> u32 {
+    pub fn dummy(&self) -> u32 {
         self.now.len() as u32 - 1
     }
 
@@ -71,7 +71,7 @@ impl Beads {
     }
 }
 
-impl Beads {
+impl GatheredParticles {
     /// One end of eight springs, at eight particles.
     #[inline(always)]
     pub fn end<S: Simd, const DAMPED: bool>(&self, simd: S, particles: &[u32; LANES]) -> End<f32x8<S>> {

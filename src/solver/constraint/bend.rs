@@ -29,15 +29,15 @@
 
 use fearless_simd::dispatch;
 
-use super::beads::Beads;
-use crate::solver::{Instructions, Lanes, Material, Topology};
+use super::beads::GatheredParticles;
+use crate::solver::{SimdLevel, Lanes, Material, Topology};
 
 mod arms;
 mod bent;
 mod stages;
 
-pub(in crate::solver) use bent::Bent;
-pub(in crate::solver) use stages::Ways;
+pub(in crate::solver) use bent::BendElement;
+pub(in crate::solver) use stages::ChebyshevBuffers;
 
 use arms::pull_batch;
 use stages::Stages;
@@ -47,7 +47,7 @@ const TURNING: f32 = 2.0;
 
 /// How bends are solved in a step.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Bending {
+pub(in crate::solver) struct BendSolver {
     /// B h², kg m².
     k: f32,
     /// Damping, over h, kg m².
@@ -57,7 +57,7 @@ pub(in crate::solver) struct Bending {
     stages: Stages,
 }
 
-impl Bending {
+impl BendSolver {
     /// How a material bends in substeps of `h` seconds, perhaps without what is `woven`; none where nothing does.
     pub fn new(topology: &Topology, woven: bool, material: &Material, lanes: &Lanes, h: f32) -> Option<Self> {
         let moduli = material.moduli()?;
@@ -84,15 +84,15 @@ fn lightness(topology: &Topology, material: &Material, lanes: &Lanes) -> f32 {
 
 /// Solves all bends, or without those that are `woven`.
 pub(in crate::solver) fn solve(
-    beads: &mut Beads,
-    ways: &mut Ways,
+    beads: &mut GatheredParticles,
+    ways: &mut ChebyshevBuffers,
     topology: &Topology,
     woven: bool,
-    bending: Bending,
-    instructions: Instructions,
+    bending: BendSolver,
+    simd_level: SimdLevel,
 ) {
     ways.begin(&beads.now);
-    let level = instructions.level();
+    let level = simd_level.level();
     for shares in bending.stages.shares() {
         for batch in topology.bend_batches.iter().filter(|batch| woven || !batch.woven) {
             let bends = &topology.bends[batch.range.clone()];

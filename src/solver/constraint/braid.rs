@@ -3,34 +3,34 @@
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    beads::Beads,
-    law::{AnyThreads, Laws},
-    strand::{Pack, Rows, Springs},
-    weave::Loom,
-    yarn::Yarn,
+    beads::GatheredParticles,
+    law::{GatheredStrandLaws, StrandLaws},
+    strand::{StrandLanes, EliminationRows, StrandSprings},
+    weave::StrandScratch,
+    yarn::StrandMaterial,
 };
 use crate::solver::{
-    Braid,
-    simd::{Instructions, Vec3x8, lane},
+    StrandPack,
+    simd::{SimdLevel, Vec3x8, lane},
 };
 
 /// The braids that are to be solved in a substep.
-pub(in crate::solver) struct Strung<'a> {
-    pub braids: &'a [Braid],
-    pub yarn: Yarn,
-    pub loom: &'a mut Loom,
+pub(in crate::solver) struct StrandPackSolver<'a> {
+    pub strand_packs: &'a [StrandPack],
+    pub yarn: StrandMaterial,
+    pub strand_scratch: &'a mut StrandScratch,
 }
 
-impl Strung<'_> {
+impl StrandPackSolver<'_> {
     /// Solves them one after the other.
-    pub fn solve(self, beads: &mut Beads, instructions: Instructions) {
-        let Self { braids, yarn, loom } = self;
-        loom.make_room(braids.iter().map(|braid| braid.nodes.len()).max().unwrap_or(0));
-        let level = instructions.level();
+    pub fn solve(self, beads: &mut GatheredParticles, simd_level: SimdLevel) {
+        let Self { strand_packs, yarn, strand_scratch } = self;
+        strand_scratch.make_room(strand_packs.iter().map(|braid| braid.nodes.len()).max().unwrap_or(0));
+        let level = simd_level.level();
         if yarn.is_damped() {
-            dispatch!(level, simd => solve_braids::<_, true>(simd, beads, braids, yarn, loom));
+            dispatch!(level, simd => solve_braids::<_, true>(simd, beads, strand_packs, yarn, strand_scratch));
         } else {
-            dispatch!(level, simd => solve_braids::<_, false>(simd, beads, braids, yarn, loom));
+            dispatch!(level, simd => solve_braids::<_, false>(simd, beads, strand_packs, yarn, strand_scratch));
         }
     }
 }
@@ -38,12 +38,12 @@ impl Strung<'_> {
 #[inline(always)]
 fn solve_braids<S: Simd, const DAMPED: bool>(
     simd: S,
-    beads: &mut Beads,
-    braids: &[Braid],
-    yarn: Yarn,
-    Loom { rows, position, previous, inverse_mass }: &mut Loom,
+    beads: &mut GatheredParticles,
+    strand_packs: &[StrandPack],
+    yarn: StrandMaterial,
+    StrandScratch { rows, position, previous, inverse_mass }: &mut StrandScratch,
 ) {
-    for braid in braids {
+    for braid in strand_packs {
         for (j, particles) in braid.nodes.iter().enumerate() {
             let end = beads.end::<S, DAMPED>(simd, particles);
             end.position.store(&mut position[j]);
@@ -52,9 +52,9 @@ fn solve_braids<S: Simd, const DAMPED: bool>(
             }
             inverse_mass[j] = end.inverse_mass.into();
         }
-        let mut pack = Pack { position, previous, inverse_mass, stride: braid.nodes.len() };
+        let mut pack = StrandLanes { position, previous, inverse_mass, stride: braid.nodes.len() };
         match yarn {
-            Yarn::Alike { stretch, bend } => {
+            StrandMaterial::Alike { stretch, bend } => {
                 if let Some(bend) = bend.filter(|_| !braid.bend.is_empty()) {
                     pack.solve_bends::<S, f32x8<S>, DAMPED>(simd, braid.nodes.len(), &braid.bend, bend);
                 }
@@ -62,11 +62,11 @@ fn solve_braids<S: Simd, const DAMPED: bool>(
                     solve_stretch::<S, _, DAMPED>(simd, &mut pack, braid, stretch, rows);
                 }
             }
-            Yarn::Sheet { stretch: gradings, .. } if !braid.shares.is_empty() => {
-                let laws = AnyThreads { shares: &braid.shares, gradings };
+            StrandMaterial::GridView { stretch: gradings, .. } if !braid.shares.is_empty() => {
+                let laws = GatheredStrandLaws { shares: &braid.shares, gradings };
                 solve_stretch::<S, _, DAMPED>(simd, &mut pack, braid, laws, rows);
             }
-            Yarn::Sheet { .. } | Yarn::Pulling(_) => {}
+            StrandMaterial::GridView { .. } | StrandMaterial::SpringResponse(_) => {}
         }
         for (j, particles) in braid.nodes.iter().enumerate() {
             beads.put(particles, Vec3x8::load(simd, &position[j]), lane(simd, &inverse_mass[j]));
@@ -75,14 +75,14 @@ fn solve_braids<S: Simd, const DAMPED: bool>(
 }
 
 #[inline(always)]
-fn solve_stretch<S: Simd, L: Laws<S, f32x8<S>>, const DAMPED: bool>(
+fn solve_stretch<S: Simd, L: StrandLaws<S, f32x8<S>>, const DAMPED: bool>(
     simd: S,
-    pack: &mut Pack,
-    braid: &Braid,
+    pack: &mut StrandLanes,
+    braid: &StrandPack,
     laws: L,
-    rows: &mut Rows,
+    rows: &mut EliminationRows,
 ) {
-    let (count, springs) = (braid.nodes.len(), Springs { rest: &braid.stretch, laws });
+    let (count, springs) = (braid.nodes.len(), StrandSprings { rest: &braid.stretch, laws });
     if braid.closed {
         pack.solve::<S, f32x8<S>, L, DAMPED, true>(simd, count, springs, rows);
     } else {

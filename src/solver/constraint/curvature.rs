@@ -19,7 +19,7 @@ use fearless_simd::{f32x8, prelude::*};
 
 use super::{
     law::Scaled,
-    strand::{Pack, Rows},
+    strand::{StrandLanes, EliminationRows},
 };
 use crate::solver::{
     lanes::Block,
@@ -28,7 +28,7 @@ use crate::solver::{
 
 /// The bends of threads side by side.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Bends<'a> {
+pub(in crate::solver) struct StrandBends<'a> {
     /// Weights p and q at each node, 1/m times m: zero where nothing bends, as at the ends.
     pub weights: &'a [[Lane; 2]],
     /// What D is at rest, m; empty where the cloth is flat.
@@ -77,15 +77,15 @@ pub(in crate::solver) fn factorize<S: Simd>(
     }
 }
 
-impl Pack<'_> {
+impl StrandLanes<'_> {
     /// Solves the bends of all inner nodes of one pack of threads with `count` nodes.
     #[inline(always)]
     pub fn solve_curvature<S: Simd, const DAMPED: bool, const CURVED: bool>(
         &mut self,
         simd: S,
         count: usize,
-        bends: Bends,
-        rows: &mut Rows,
+        bends: StrandBends,
+        rows: &mut EliminationRows,
     ) {
         if count > 2 {
             self.eliminate_bends::<S, DAMPED, CURVED>(simd, count, bends, rows);
@@ -98,8 +98,8 @@ impl Pack<'_> {
         &self,
         simd: S,
         count: usize,
-        Bends { weights, rest, factors, rigidity }: Bends,
-        rows: &mut Rows,
+        StrandBends { weights, rest, factors, rigidity }: StrandBends,
+        rows: &mut EliminationRows,
     ) {
         let damping = f32x8::splat(simd, rigidity.c / rigidity.k);
         let mut here = self.end::<S, f32x8<S>, DAMPED>(simd, 1);
@@ -132,7 +132,7 @@ impl Pack<'_> {
 
     /// From the last bend back to the first. Each node moves when the bends around it are known.
     #[inline(always)]
-    fn substitute_bends<S: Simd>(&mut self, simd: S, count: usize, Bends { weights, factors, .. }: Bends, rows: &Rows) {
+    fn substitute_bends<S: Simd>(&mut self, simd: S, count: usize, StrandBends { weights, factors, .. }: StrandBends, rows: &EliminationRows) {
         let none = f32x8::splat(simd, 0.0);
         let nothing = Vec3x8::splat(simd, [0.0; 3]);
         // Of the two nodes after: lambda, and the entries below the diagonal that still count.

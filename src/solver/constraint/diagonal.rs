@@ -17,22 +17,22 @@
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    bias::{Bias, Diagonals},
+    bias::{ShearScratch, ShearStrands},
     law::Scaled,
-    plate::Plate,
+    bend_factors::BendFactors,
     spring::{End, solve_abreast},
-    weave::Sheet,
+    weave::GridView,
 };
 use crate::solver::{
     Elasticity, Lattice, Material, SpringConstants, SpringKind,
     lanes::Block,
     order::Band,
-    simd::{Instructions, Lane, Vec3x8, lane},
+    simd::{SimdLevel, Lane, Vec3x8, lane},
 };
 
 /// What cells resist.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct CellYarn<'a> {
+pub(in crate::solver) struct CellMaterial<'a> {
     /// The springs along diagonals: those of the whole stiffness.
     pub spring: Scaled,
     /// Whether cells have a part of it, as those of a sheet do, instead of all being alike.
@@ -40,20 +40,20 @@ pub(in crate::solver) struct CellYarn<'a> {
     /// B h² and its damping. None where nothing resists being twisted.
     pub rigidity: Option<Scaled>,
     /// What twists are at rest.
-    pub plate: &'a Plate,
+    pub bend_factors: &'a BendFactors,
 }
 
-impl<'a> CellYarn<'a> {
-    pub fn new(material: &Material, h: f32, plate: &'a Plate) -> Self {
+impl<'a> CellMaterial<'a> {
+    pub fn new(material: &Material, h: f32, bend_factors: &'a BendFactors) -> Self {
         match &material.elasticity {
             Elasticity::Springs(constants) => {
                 let spring = Scaled::new(constants[SpringKind::Shear.index()], h);
-                Self { spring, is_sheet: false, rigidity: None, plate }
+                Self { spring, is_sheet: false, rigidity: None, bend_factors }
             }
             Elasticity::Moduli(moduli) => {
                 let shear = SpringConstants { stiffness: moduli.shear, damping: moduli.shear * moduli.stretch_damping };
                 let rigidity = Some(Scaled::new(moduli.rigidity(), h)).filter(Scaled::acts);
-                Self { spring: Scaled::new(shear, h), is_sheet: true, rigidity, plate }
+                Self { spring: Scaled::new(shear, h), is_sheet: true, rigidity, bend_factors }
             }
         }
     }
@@ -61,74 +61,74 @@ impl<'a> CellYarn<'a> {
 
 /// Solves the diagonals of all cells: those between an even row and the next, then those below.
 pub(in crate::solver) fn solve(
-    sheet: &mut Sheet,
+    grid: &mut GridView,
     lattice: &Lattice,
-    yarn: CellYarn,
+    yarn: CellMaterial,
     seam: &mut Seam,
-    bias: &mut Bias,
-    instructions: Instructions,
+    bias: &mut ShearScratch,
+    simd_level: SimdLevel,
 ) {
     let bands = lattice.order().bands();
     for parity in [0, 1] {
         for band in bands.clone() {
-            solve_band(&mut sheet.band(band), band, parity, lattice, yarn, bias, instructions);
+            solve_band(&mut grid.band(band), band, parity, lattice, yarn, bias, simd_level);
         }
     }
     for (upper, lower) in bands.clone().zip(bands.skip(1)) {
         for (band, row) in [(upper, 0), (lower, 1)] {
-            seam.take(&sheet.band(band), band, row);
+            seam.take(&grid.band(band), band, row);
         }
-        seam.solve(lower, lattice, yarn, bias, instructions);
+        seam.solve(lower, lattice, yarn, bias, simd_level);
         for (band, row) in [(upper, 0), (lower, 1)] {
-            seam.put(sheet.band(band).position, band, row);
+            seam.put(grid.band(band).position, band, row);
         }
     }
 }
 
 /// Solves the diagonals between rows of a band: those below its even rows, or those below the odd ones.
 pub(in crate::solver) fn solve_band(
-    sheet: &mut Sheet,
+    grid: &mut GridView,
     band: Band,
     parity: usize,
     lattice: &Lattice,
-    yarn: CellYarn,
-    bias: &mut Bias,
-    instructions: Instructions,
+    yarn: CellMaterial,
+    bias: &mut ShearScratch,
+    simd_level: SimdLevel,
 ) {
-    solve_pairs(sheet, band.rows, band.first, parity, lattice, yarn, bias, instructions);
+    solve_pairs(grid, band.rows, band.first, parity, lattice, yarn, bias, simd_level);
 }
 
 #[expect(clippy::too_many_arguments, reason = "what is solved, where, with what")]
 /// The same in a sheet of so many `rows`, whose `first` is its number in the lattice.
 fn solve_pairs(
-    sheet: &mut Sheet,
+    grid: &mut GridView,
     rows: usize,
     first: usize,
     parity: usize,
     lattice: &Lattice,
-    yarn: CellYarn,
-    bias: &mut Bias,
-    instructions: Instructions,
+    yarn: CellMaterial,
+    bias: &mut ShearScratch,
+    simd_level: SimdLevel,
 ) {
-    let level = instructions.level();
+    let level = simd_level.level();
     let some = (parity..rows - 1).step_by(2);
     let pairs = RowPairs { lattice, rows, first, yarn };
     if let Some(rigidity) = yarn.rigidity {
         let some = some.clone();
         if rigidity.c > 0.0 {
-            dispatch!(level, simd => pairs.solve_twists::<_, true>(simd, sheet, some, rigidity));
+            dispatch!(level, simd => pairs.solve_twists::<_, true>(simd, grid, some, rigidity));
         } else {
-            dispatch!(level, simd => pairs.solve_twists::<_, false>(simd, sheet, some, rigidity));
+            dispatch!(level, simd => pairs.solve_twists::<_, false>(simd, grid, some, rigidity));
         }
     }
     match (yarn.is_sheet, yarn.spring.c > 0.0) {
         _ if !yarn.spring.acts() => {}
-        (false, false) => dispatch!(level, simd => pairs.solve_diagonals::<_, false>(simd, sheet, some)),
-        (false, true) => dispatch!(level, simd => pairs.solve_diagonals::<_, true>(simd, sheet, some)),
+        (false, false) => dispatch!(level, simd => pairs.solve_diagonals::<_, false>(simd, grid, some)),
+        (false, true) => dispatch!(level, simd => pairs.solve_diagonals::<_, true>(simd, grid, some)),
         // All rows at once.
         (true, _) if parity > 0 => {}
-        (true, false) => dispatch!(level, simd => pairs.solve_bias::<_, false>(simd, sheet, bias)),
-        (true, true) => dispatch!(level, simd => pairs.solve_bias::<_, true>(simd, sheet, bias)),
+        (true, false) => dispatch!(level, simd => pairs.solve_bias::<_, false>(simd, grid, bias)),
+        (true, true) => dispatch!(level, simd => pairs.solve_bias::<_, true>(simd, grid, bias)),
     }
 }
 
@@ -142,7 +142,7 @@ pub(in crate::solver) struct Seam {
 
 impl Seam {
     /// Takes the last row of the band above, which is the seam's row 0, or the first row of the band below, its row 1.
-    pub fn take(&mut self, part: &Sheet, band: Band, row: usize) {
+    pub fn take(&mut self, part: &GridView, band: Band, row: usize) {
         let packs = part.position.len() / band.rows;
         for blocks in [&mut self.position, &mut self.previous] {
             blocks.resize(2 * packs, Block::default());
@@ -161,13 +161,13 @@ impl Seam {
         &mut self,
         below: Band,
         lattice: &Lattice,
-        yarn: CellYarn,
-        bias: &mut Bias,
-        instructions: Instructions,
+        yarn: CellMaterial,
+        bias: &mut ShearScratch,
+        simd_level: SimdLevel,
     ) {
         let Self { position, previous, inverse_mass } = self;
-        let mut sheet = Sheet { position, previous, inverse_mass, row_masses: &[] };
-        solve_pairs(&mut sheet, 2, below.first - 1, 0, lattice, yarn, bias, instructions);
+        let mut grid = GridView { position, previous, inverse_mass, row_masses: &[] };
+        solve_pairs(&mut grid, 2, below.first - 1, 0, lattice, yarn, bias, simd_level);
     }
 
     /// Puts a row back.
@@ -187,7 +187,7 @@ struct RowPairs<'a> {
     lattice: &'a Lattice,
     rows: usize,
     first: usize,
-    yarn: CellYarn<'a>,
+    yarn: CellMaterial<'a>,
 }
 
 impl RowPairs<'_> {
@@ -197,27 +197,27 @@ impl RowPairs<'_> {
     }
 
     #[inline(always)]
-    fn end<S: Simd, const DAMPED: bool>(&self, simd: S, sheet: &Sheet, at: usize) -> End<f32x8<S>> {
-        let position = Vec3x8::load(simd, &sheet.position[at]);
-        let previous = if DAMPED { Vec3x8::load(simd, &sheet.previous[at]) } else { position };
-        End { position, previous, inverse_mass: lane(simd, &sheet.inverse_mass[at]) }
+    fn end<S: Simd, const DAMPED: bool>(&self, simd: S, grid: &GridView, at: usize) -> End<f32x8<S>> {
+        let position = Vec3x8::load(simd, &grid.position[at]);
+        let previous = if DAMPED { Vec3x8::load(simd, &grid.previous[at]) } else { position };
+        End { position, previous, inverse_mass: lane(simd, &grid.inverse_mass[at]) }
     }
 
     /// The block at a place, and the one below.
     #[inline(always)]
-    fn ends<S: Simd, const DAMPED: bool>(&self, simd: S, sheet: &Sheet, at: usize) -> [End<f32x8<S>>; 2] {
-        [self.end::<S, DAMPED>(simd, sheet, at), self.end::<S, DAMPED>(simd, sheet, at + 1)]
+    fn ends<S: Simd, const DAMPED: bool>(&self, simd: S, grid: &GridView, at: usize) -> [End<f32x8<S>>; 2] {
+        [self.end::<S, DAMPED>(simd, grid, at), self.end::<S, DAMPED>(simd, grid, at + 1)]
     }
 
     /// Solves the diagonals of a sheet as strands.
     #[inline(always)]
-    fn solve_bias<S: Simd, const DAMPED: bool>(&self, simd: S, sheet: &mut Sheet, bias: &mut Bias) {
+    fn solve_bias<S: Simd, const DAMPED: bool>(&self, simd: S, grid: &mut GridView, bias: &mut ShearScratch) {
         let Scaled { k, c } = self.yarn.spring;
         let Lattice { rows: stride, falling, rising, cell_shares, .. } = self.lattice;
         let shares = &cell_shares[self.first..];
-        let diagonals = |rest| Diagonals { rows: self.rows, rest, shares, stride: *stride, spring: [k, c] };
-        diagonals(&falling[self.first..]).solve::<S, false, DAMPED>(simd, sheet, bias);
-        diagonals(&rising[self.first..]).solve::<S, true, DAMPED>(simd, sheet, bias);
+        let diagonals = |rest| ShearStrands { rows: self.rows, rest, shares, stride: *stride, spring: [k, c] };
+        diagonals(&falling[self.first..]).solve::<S, false, DAMPED>(simd, grid, bias);
+        diagonals(&rising[self.first..]).solve::<S, true, DAMPED>(simd, grid, bias);
     }
 
     /// Solves the diagonals below `some` rows one by one.
@@ -225,7 +225,7 @@ impl RowPairs<'_> {
     fn solve_diagonals<S: Simd, const DAMPED: bool>(
         &self,
         simd: S,
-        sheet: &mut Sheet,
+        grid: &mut GridView,
         some: impl Iterator<Item = usize>,
     ) {
         for row in some {
@@ -234,7 +234,7 @@ impl RowPairs<'_> {
             // By turns, so that what comes first doesn't set the cloth spinning.
             let pairs = if (self.first + row) % 4 < 2 { [falling, rising] } else { [rising, falling] };
             for (rest, ends) in pairs {
-                self.solve_row_pair::<S, DAMPED>(simd, sheet, row, rest, ends);
+                self.solve_row_pair::<S, DAMPED>(simd, grid, row, rest, ends);
             }
         }
     }
@@ -244,27 +244,27 @@ impl RowPairs<'_> {
     fn solve_row_pair<S: Simd, const DAMPED: bool>(
         &self,
         simd: S,
-        sheet: &mut Sheet,
+        grid: &mut GridView,
         row: usize,
         rest: &[Lane],
         [from, to]: [usize; 2],
     ) {
-        let (count, spring) = (sheet.position.len(), self.yarn.spring);
-        let mut here = self.end::<S, DAMPED>(simd, sheet, to);
+        let (count, spring) = (grid.position.len(), self.yarn.spring);
+        let mut here = self.end::<S, DAMPED>(simd, grid, to);
         // The first particle of the row is nobody's next one.
         let mut moved_before = here.position.ahead(here.position);
         for (at, rest) in (0..count).step_by(self.rows).zip(self.of_row(rest, row)) {
             // After the last block comes nobody: there are no springs to it.
-            let next = self.end::<S, DAMPED>(simd, sheet, (at + self.rows + to).min(count - self.rows + to));
+            let next = self.end::<S, DAMPED>(simd, grid, (at + self.rows + to).min(count - self.rows + to));
             let ahead = End {
                 position: here.position.ahead(next.position),
                 previous: if DAMPED { here.previous.ahead(next.previous) } else { here.position },
                 inverse_mass: here.inverse_mass.slide::<1>(next.inverse_mass),
             };
-            let (end, rest) = (self.end::<S, DAMPED>(simd, sheet, at + from), lane(simd, rest));
+            let (end, rest) = (self.end::<S, DAMPED>(simd, grid, at + from), lane(simd, rest));
             let [a, b] = solve_abreast::<_, _, DAMPED>(simd, end, ahead, rest, spring);
-            a.store(&mut sheet.position[at + from]);
-            moved_before.behind(b).store(&mut sheet.position[at + to]);
+            a.store(&mut grid.position[at + from]);
+            moved_before.behind(b).store(&mut grid.position[at + to]);
             (here, moved_before) = (next, b);
         }
     }
@@ -274,21 +274,21 @@ impl RowPairs<'_> {
     fn solve_twists<S: Simd, const DAMPED: bool>(
         &self,
         simd: S,
-        sheet: &mut Sheet,
+        grid: &mut GridView,
         some: impl Iterator<Item = usize>,
         rigidity: Scaled,
     ) {
-        let count = sheet.position.len();
+        let count = grid.position.len();
         let (nothing, one) = (Vec3x8::splat(simd, [0.0; 3]), f32x8::splat(simd, 1.0));
         // Each corner is in two of the cells that are solved at once: they share its mass.
         let total = 2.0 * (rigidity.k + rigidity.c);
         for row in some {
-            let mut rest = self.of_row(&self.yarn.plate.rest.cells, row);
-            let mut here = self.ends::<S, DAMPED>(simd, sheet, row);
+            let mut rest = self.of_row(&self.yarn.bend_factors.rest.cells, row);
+            let mut here = self.ends::<S, DAMPED>(simd, grid, row);
             let mut pull_before = nothing;
             for (at, weight) in (0..count).step_by(self.rows).zip(self.of_row(&self.lattice.twist, row)) {
                 let weight = lane(simd, weight);
-                let next = self.ends::<S, DAMPED>(simd, sheet, (at + self.rows).min(count - self.rows) + row);
+                let next = self.ends::<S, DAMPED>(simd, grid, (at + self.rows).min(count - self.rows) + row);
                 // From a corner to the one below, and how that changes from column to column.
                 let down = here[0].position - here[1].position;
                 let twist = (down - down.ahead(next[0].position - next[1].position)) * weight;
@@ -306,8 +306,8 @@ impl RowPairs<'_> {
                 let pull = right * (weight * -rigidity.k / (masses * (weight * weight) * total + one));
                 let by = pull - pull_before.behind(pull);
                 let [above, below] = here;
-                (above.position + by * above.inverse_mass).store(&mut sheet.position[at + row]);
-                (below.position - by * below.inverse_mass).store(&mut sheet.position[at + row + 1]);
+                (above.position + by * above.inverse_mass).store(&mut grid.position[at + row]);
+                (below.position - by * below.inverse_mass).store(&mut grid.position[at + row + 1]);
                 (here, pull_before) = (next, pull);
             }
         }

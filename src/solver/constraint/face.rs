@@ -19,11 +19,11 @@
 use bevy::math::Vec3A;
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
-use super::{beads::Beads, law::Grading};
+use super::{beads::GatheredParticles, law::DirectionModuli};
 use crate::solver::{
     Face, Grain, Moduli, SpringConstants, SpringLaw,
     lanes::apart,
-    simd::{Instructions, LANES, SHORTEST, Vec3x8, lane},
+    simd::{SimdLevel, LANES, SHORTEST, Vec3x8, lane},
 };
 
 /// Factor on the diagonal of J W Jᵀ. Where a triangle has collapsed, its strains can't all be undone along the gradients
@@ -31,30 +31,30 @@ use crate::solver::{
 const CAUTION: f32 = 1.01;
 
 /// Solves the faces of one batch, which share no particle.
-pub(in crate::solver) fn solve(beads: &mut Beads, faces: &[Face], sheet: &[Grading; 2], instructions: Instructions) {
-    let level = instructions.level();
-    if sheet[0].damping > 0.0 {
-        dispatch!(level, simd => solve_batch::<_, true>(simd, beads, faces, sheet));
+pub(in crate::solver) fn solve(beads: &mut GatheredParticles, faces: &[Face], grid: &[DirectionModuli; 2], simd_level: SimdLevel) {
+    let level = simd_level.level();
+    if grid[0].damping > 0.0 {
+        dispatch!(level, simd => solve_batch::<_, true>(simd, beads, faces, grid));
     } else {
-        dispatch!(level, simd => solve_batch::<_, false>(simd, beads, faces, sheet));
+        dispatch!(level, simd => solve_batch::<_, false>(simd, beads, faces, grid));
     }
 }
 
 #[inline(always)]
-fn solve_batch<S: Simd, const DAMPED: bool>(simd: S, beads: &mut Beads, faces: &[Face], sheet: &[Grading; 2]) {
+fn solve_batch<S: Simd, const DAMPED: bool>(simd: S, beads: &mut GatheredParticles, faces: &[Face], grid: &[DirectionModuli; 2]) {
     let (groups, rest) = faces.as_chunks::<LANES>();
     for faces in groups {
-        solve_gathered::<S, DAMPED>(simd, beads, faces, sheet);
+        solve_gathered::<S, DAMPED>(simd, beads, faces, grid);
     }
     if !rest.is_empty() {
-        let mut faces = [Face { particles: [beads.nobody(); 3], ..Face::default() }; LANES];
+        let mut faces = [Face { particles: [beads.dummy(); 3], ..Face::default() }; LANES];
         faces[..rest.len()].copy_from_slice(rest);
-        solve_gathered::<S, DAMPED>(simd, beads, &faces, sheet);
+        solve_gathered::<S, DAMPED>(simd, beads, &faces, grid);
     }
 }
 
 /// What eight faces are made of.
-struct Cut<S: Simd> {
+struct FaceStress<S: Simd> {
     warp: [f32x8<S>; 2],
     weft: [f32x8<S>; 2],
     area: f32x8<S>,
@@ -63,9 +63,9 @@ struct Cut<S: Simd> {
 #[inline(always)]
 fn solve_gathered<S: Simd, const DAMPED: bool>(
     simd: S,
-    beads: &mut Beads,
+    beads: &mut GatheredParticles,
     faces: &[Face; LANES],
-    sheet: &[Grading; 2],
+    grid: &[DirectionModuli; 2],
 ) {
     let [f0, f1, f2, f3, f4, f5, f6, f7] = faces;
     macro_rules! each {
@@ -85,7 +85,7 @@ fn solve_gathered<S: Simd, const DAMPED: bool>(
     let (a, b, c) = (each!(particles[0]), each!(particles[1]), each!(particles[2]));
     let eight = [&row(f0), &row(f1), &row(f2), &row(f3), &row(f4), &row(f5), &row(f6), &row(f7)];
     let [u1, u2, v1, v2] = apart(simd, eight);
-    let cut = Cut {
+    let cut = FaceStress {
         warp: [u1, u2],
         weft: [v1, v2],
         area: lane(simd, &[f0.area, f1.area, f2.area, f3.area, f4.area, f5.area, f6.area, f7.area]),
@@ -95,7 +95,7 @@ fn solve_gathered<S: Simd, const DAMPED: bool>(
     let before = [corners[0].previous, corners[1].previous, corners[2].previous];
     let masses = [corners[0].inverse_mass, corners[1].inverse_mass, corners[2].inverse_mass];
     let now = [corners[0].position, corners[1].position, corners[2].position];
-    let [at_a, at_b, at_c] = solve_abreast::<S, DAMPED>(simd, now, before, masses, cut, sheet);
+    let [at_a, at_b, at_c] = solve_abreast::<S, DAMPED>(simd, now, before, masses, cut, grid);
     beads.put(&a, at_a, masses[0]);
     beads.put(&b, at_b, masses[1]);
     beads.put(&c, at_c, masses[2]);
@@ -109,7 +109,7 @@ fn row(face: &Face) -> [f32; 4] {
 
 /// Steps along warp and weft.
 #[inline(always)]
-fn steps<S: Simd>([a, b, c]: [Vec3x8<S>; 3], cut: &Cut<S>) -> [Vec3x8<S>; 2] {
+fn steps<S: Simd>([a, b, c]: [Vec3x8<S>; 3], cut: &FaceStress<S>) -> [Vec3x8<S>; 2] {
     let (ab, ac) = (b - a, c - a);
     [ab * cut.warp[0] + ac * cut.warp[1], ab * cut.weft[0] + ac * cut.weft[1]]
 }
@@ -121,8 +121,8 @@ fn solve_abreast<S: Simd, const DAMPED: bool>(
     now: [Vec3x8<S>; 3],
     before: [Vec3x8<S>; 3],
     [wa, wb, wc]: [f32x8<S>; 3],
-    cut: Cut<S>,
-    [warp, weft]: &[Grading; 2],
+    cut: FaceStress<S>,
+    [warp, weft]: &[DirectionModuli; 2],
 ) -> [Vec3x8<S>; 3] {
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let least = f32x8::splat(simd, SHORTEST);
@@ -191,12 +191,12 @@ fn solve_abreast<S: Simd, const DAMPED: bool>(
 
 /// The strains of a face, one by one: what the forces of the textbook and the energy follow.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Deformed {
+pub(in crate::solver) struct FaceStrain {
     warp: Vec3A,
     weft: Vec3A,
 }
 
-impl Deformed {
+impl FaceStrain {
     /// Its steps along warp and weft between three points.
     pub fn new(face: &Face, [a, b, c]: [Vec3A; 3]) -> Self {
         let (ab, ac) = (b - a, c - a);
@@ -287,8 +287,8 @@ mod tests {
         let (warp, weft, angle) = (2e-3, -1e-3, 3e-3);
         // Of shear alone, half to each side.
         let corners = deformed(Vec3A::new(1.0 + weft, angle / 2.0, 0.0), Vec3A::new(angle / 2.0, 1.0 + warp, 0.0));
-        let at_rest = Deformed::new(&FACE, [Vec3A::ZERO; 3]);
-        let forces = Deformed::new(&FACE, corners).forces(&FACE, &linear, &at_rest, f32::MAX);
+        let at_rest = FaceStrain::new(&FACE, [Vec3A::ZERO; 3]);
+        let forces = FaceStrain::new(&FACE, corners).forces(&FACE, &linear, &at_rest, f32::MAX);
         // Virtual work: the stress is the sum of forces times places over the area.
         let stress = |i: usize, j: usize| -> f32 {
             let sum: f32 = forces.iter().zip(&corners[1..]).map(|(force, p)| force[i] * p[j]).sum();
@@ -318,14 +318,14 @@ mod tests {
         masses: [f32; 3],
         moduli: &Moduli,
         h: f32,
-        instructions: Instructions,
+        simd_level: SimdLevel,
     ) -> [Vec3A; 3] {
         let list = |points: [Vec3A; 3]| -> Vec<[f32; 4]> {
             let points = [0, 1, 2].map(|i| [points[i].x, points[i].y, points[i].z, masses[i]]);
             points.into_iter().chain([[0.0; 4]]).collect()
         };
-        let mut beads = Beads { now: list(corners), before: list(before) };
-        solve(&mut beads, &[FACE], &Grading::both(moduli, h), instructions);
+        let mut beads = GatheredParticles { now: list(corners), before: list(before) };
+        solve(&mut beads, &[FACE], &DirectionModuli::both(moduli, h), simd_level);
         [0, 1, 2].map(|i| Vec3A::from_slice(&beads.now[i]))
     }
 
@@ -335,21 +335,21 @@ mod tests {
         #[test]
         fn forces_are_the_slope_of_the_energy(noise in collection::vec(-1.0_f32..1.0, 18)) {
             let (corners, velocities) = state(&noise);
-            let rates = Deformed::new(&FACE, velocities);
+            let rates = FaceStrain::new(&FACE, velocities);
             let bare = Moduli { stretch_damping: 0.0, ..JERSEY };
-            let [b, c] = Deformed::new(&FACE, corners).forces(&FACE, &bare, &rates, f32::MAX);
+            let [b, c] = FaceStrain::new(&FACE, corners).forces(&FACE, &bare, &rates, f32::MAX);
             for (i, force) in [-(b + c), b, c].into_iter().enumerate() {
                 for axis in [Vec3A::X, Vec3A::Y, Vec3A::Z] {
                     let energy = |way: f32| {
                         let mut corners = corners;
                         corners[i] += axis * way;
-                        Deformed::new(&FACE, corners).energy(&bare) * FACE.area
+                        FaceStrain::new(&FACE, corners).energy(&bare) * FACE.area
                     };
                     let slope = (energy(2e-3) - energy(-2e-3)) / 4e-3;
                     prop_assert!((slope + force.dot(axis)).abs() < 0.2, "{slope} {force}");
                 }
             }
-            let [p, q] = Deformed::new(&FACE, corners).forces(&FACE, &JERSEY, &rates, f32::MAX);
+            let [p, q] = FaceStrain::new(&FACE, corners).forces(&FACE, &JERSEY, &rates, f32::MAX);
             let work = (p - b).dot(velocities[1] - velocities[0]) + (q - c).dot(velocities[2] - velocities[0]);
             prop_assert!(work <= 1e-3, "{work}");
         }
@@ -360,15 +360,15 @@ mod tests {
             let h = 5e-4;
             let masses = [2.0, 1.0, 0.5];
             let before = [0, 1, 2].map(|i| corners[i] - velocities[i] * h);
-            let rates = Deformed::new(&FACE, velocities);
-            let [b, c] = Deformed::new(&FACE, corners).forces(&FACE, &JERSEY, &rates, f32::MAX);
-            let moved = solved(corners, before, masses, &JERSEY, h, Instructions::Best);
+            let rates = FaceStrain::new(&FACE, velocities);
+            let [b, c] = FaceStrain::new(&FACE, corners).forces(&FACE, &JERSEY, &rates, f32::MAX);
+            let moved = solved(corners, before, masses, &JERSEY, h, SimdLevel::Best);
             for i in 0..3 {
                 let expected = [-(b + c), b, c][i] * masses[i] * h * h;
                 let size = (b.length() + c.length()) * h * h;
                 prop_assert!((moved[i] - corners[i] - expected).length() < 0.03 * size + 1e-6, "{expected}");
             }
-            let baseline = solved(corners, before, masses, &JERSEY, h, Instructions::Baseline);
+            let baseline = solved(corners, before, masses, &JERSEY, h, SimdLevel::Baseline);
             prop_assert_eq!(moved, baseline);
         }
 
@@ -386,7 +386,7 @@ mod tests {
             let (corners, velocities) = state(&noise);
             let corners = if flat { [corners[0], corners[0], corners[1]] } else { corners };
             let before = [0, 1, 2].map(|i| corners[i] - velocities[i] * 0.01);
-            let moved = solved(corners, before, masses, &moduli, 0.01, Instructions::Best);
+            let moved = solved(corners, before, masses, &moduli, 0.01, SimdLevel::Best);
             for i in 0..3 {
                 prop_assert!(moved[i].distance(corners[i]) < 20.0, "{} {}", corners[i], moved[i]);
                 prop_assert!(masses[i] > 0.0 || moved[i] == corners[i]);
@@ -399,8 +399,8 @@ mod tests {
         let linear = Moduli { stretch: [1e9, 2e9], shear: 5e8, compression: 1.0, stiffening: [0.0; 2], ..JERSEY };
         let bare = Moduli { stretch_damping: 0.0, ..linear };
         let corners = deformed(Vec3A::new(1.01, 0.02, 0.0), Vec3A::new(-0.01, 0.99, 0.0));
-        let moved = solved(corners, corners, [1.0; 3], &bare, 0.01, Instructions::Best);
-        let [u, v, shear] = Deformed::new(&FACE, moved).strains();
+        let moved = solved(corners, corners, [1.0; 3], &bare, 0.01, SimdLevel::Best);
+        let [u, v, shear] = FaceStrain::new(&FACE, moved).strains();
         assert!(u.abs() < 6e-4 && v.abs() < 6e-4 && shear.abs() < 1e-3, "{u} {v} {shear}");
     }
 }

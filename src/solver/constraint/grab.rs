@@ -143,7 +143,7 @@ pub(in crate::solver) fn solve_tethers(lanes: &mut Lanes, grabs: &[Grab], slack:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::{Instructions, Particles};
+    use crate::solver::{SimdLevel, Particles};
 
     fn triangle() -> Lanes {
         let particles = Particles {
@@ -153,7 +153,7 @@ mod tests {
             force: vec![Vec3A::ZERO; 3],
         };
         let mut lanes = Lanes::default();
-        lanes.load(&particles, Order::plain(3), Instructions::Best);
+        lanes.load(&particles, Order::plain(3), SimdLevel::Best);
         lanes.previous = lanes.position.clone();
         lanes
     }

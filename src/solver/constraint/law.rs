@@ -26,12 +26,12 @@ impl Scaled {
 }
 
 /// What some springs side by side follow.
-pub(in crate::solver) trait Law<S: Simd, F: Wide<S>>: Copy {
+pub(in crate::solver) trait WideSpringLaw<S: Simd, F: Wide<S>>: Copy {
     /// k h² and c h (kg) of springs of these lengths, at rest and now, m.
     fn scaled(self, simd: S, rest: F, length: F) -> [F; 2];
 }
 
-impl<S: Simd, F: Wide<S>> Law<S, F> for Scaled {
+impl<S: Simd, F: Wide<S>> WideSpringLaw<S, F> for Scaled {
     #[inline(always)]
     fn scaled(self, simd: S, _: F, _: F) -> [F; 2] {
         [F::splat(simd, self.k), F::splat(simd, self.c)]
@@ -39,7 +39,7 @@ impl<S: Simd, F: Wide<S>> Law<S, F> for Scaled {
 }
 
 /// Each spring with a k h² and a c h of its own.
-impl<S: Simd, F: Wide<S>> Law<S, F> for [F; 2] {
+impl<S: Simd, F: Wide<S>> WideSpringLaw<S, F> for [F; 2] {
     #[inline(always)]
     fn scaled(self, _: S, _: F, _: F) -> [F; 2] {
         self
@@ -48,7 +48,7 @@ impl<S: Simd, F: Wide<S>> Law<S, F> for [F; 2] {
 
 /// What the threads of a sheet follow along one of its directions, in a substep of h seconds.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Grading {
+pub(in crate::solver) struct DirectionModuli {
     /// C h², kg.
     pub stretch: f32,
     /// G h², kg.
@@ -60,7 +60,7 @@ pub(in crate::solver) struct Grading {
     pub damping: f32,
 }
 
-impl Grading {
+impl DirectionModuli {
     fn new(moduli: &Moduli, grain: Grain, h: f32) -> Self {
         let i = grain.index();
         Self {
@@ -94,7 +94,7 @@ impl Grading {
 
 /// What some springs of a sheet's threads follow.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Graded<F> {
+pub(in crate::solver) struct ShareLaw<F> {
     /// k h² over the rest length, kg/m.
     per_length: F,
     half_stiffening: F,
@@ -102,7 +102,7 @@ pub(in crate::solver) struct Graded<F> {
     damping: f32,
 }
 
-impl<S: Simd, F: Wide<S>> Law<S, F> for Graded<F> {
+impl<S: Simd, F: Wide<S>> WideSpringLaw<S, F> for ShareLaw<F> {
     #[inline(always)]
     fn scaled(self, _: S, rest: F, length: F) -> [F; 2] {
         let Self { per_length, half_stiffening, compression, damping } = self;
@@ -113,35 +113,35 @@ impl<S: Simd, F: Wide<S>> Law<S, F> for Graded<F> {
     }
 }
 
-impl<F> Graded<F> {
+impl<F> ShareLaw<F> {
     /// Of springs with a k h² over the rest length (kg/m) that are along the warp where that part of them is the larger.
     #[inline(always)]
-    fn along<S: Simd>(simd: S, [warp, weft]: [F; 2], per_length: F, [along_warp, along_weft]: [Grading; 2]) -> Self
+    fn along<S: Simd>(simd: S, [warp, weft]: [F; 2], per_length: F, [along_warp, along_weft]: [DirectionModuli; 2]) -> Self
     where
         F: Wide<S>,
     {
-        let stiffening = |grading: Grading| F::splat(simd, grading.half_stiffening);
+        let stiffening = |grading: DirectionModuli| F::splat(simd, grading.half_stiffening);
         let half_stiffening = warp.simd_ge(weft).select(stiffening(along_warp), stiffening(along_weft));
         Self { per_length, half_stiffening, compression: along_warp.compression, damping: along_warp.damping }
     }
 }
 
 /// The laws of springs that lie anywhere.
-pub(in crate::solver) trait LooseLaws: Copy {
-    fn law<S: Simd>(&self, simd: S, springs: &[Spring; LANES]) -> impl Law<S, f32x8<S>>;
+pub(in crate::solver) trait GatherLaws: Copy {
+    fn law<S: Simd>(&self, simd: S, springs: &[Spring; LANES]) -> impl WideSpringLaw<S, f32x8<S>>;
 }
 
-impl LooseLaws for Scaled {
+impl GatherLaws for Scaled {
     #[inline(always)]
-    fn law<S: Simd>(&self, _: S, _: &[Spring; LANES]) -> impl Law<S, f32x8<S>> {
+    fn law<S: Simd>(&self, _: S, _: &[Spring; LANES]) -> impl WideSpringLaw<S, f32x8<S>> {
         *self
     }
 }
 
 /// Springs of a sheet, by [`Grain::index`].
-impl LooseLaws for [Grading; 2] {
+impl GatherLaws for [DirectionModuli; 2] {
     #[inline(always)]
-    fn law<S: Simd>(&self, simd: S, springs: &[Spring; LANES]) -> impl Law<S, f32x8<S>> {
+    fn law<S: Simd>(&self, simd: S, springs: &[Spring; LANES]) -> impl WideSpringLaw<S, f32x8<S>> {
         let [along_warp, along_weft] = *self;
         let (mut rest, mut shares) = (Lane::default(), [Lane::default(); 3]);
         for (i, spring) in springs.iter().enumerate() {
@@ -151,19 +151,19 @@ impl LooseLaws for [Grading; 2] {
         let [warp, weft, shear] = [lane(simd, &shares[0]), lane(simd, &shares[1]), lane(simd, &shares[2])];
         let k = warp * along_warp.stretch + weft * along_weft.stretch + shear * along_warp.shear;
         let per_length = k.max(f32x8::splat(simd, 0.0)) / lane(simd, &rest).max(f32x8::splat(simd, SHORTEST));
-        Graded::along(simd, [warp, weft], per_length, *self)
+        ShareLaw::along(simd, [warp, weft], per_length, *self)
     }
 }
 
 /// The laws of threads side by side, spring after spring.
-pub(in crate::solver) trait Laws<S: Simd, F: Wide<S>>: Copy {
-    type Law: Law<S, F>;
+pub(in crate::solver) trait StrandLaws<S: Simd, F: Wide<S>>: Copy {
+    type WideSpringLaw: WideSpringLaw<S, F>;
 
     /// Whether slack springs are without effect. Else taut ones pull along the direction that they have after the move.
     const ONLY_PULLS: bool;
 
     /// The law of the springs after node `at`, and of those of a second pack after node `at + stride`.
-    fn at(&self, simd: S, at: usize, stride: usize) -> Self::Law;
+    fn at(&self, simd: S, at: usize, stride: usize) -> Self::WideSpringLaw;
 
     /// Factor on the rest lengths of what only pulls, 1 or more.
     #[inline(always)]
@@ -172,8 +172,8 @@ pub(in crate::solver) trait Laws<S: Simd, F: Wide<S>>: Copy {
     }
 }
 
-impl<S: Simd, F: Wide<S>> Laws<S, F> for Scaled {
-    type Law = Self;
+impl<S: Simd, F: Wide<S>> StrandLaws<S, F> for Scaled {
+    type WideSpringLaw = Self;
 
     const ONLY_PULLS: bool = false;
 
@@ -186,14 +186,14 @@ impl<S: Simd, F: Wide<S>> Laws<S, F> for Scaled {
 /// Springs that pull where they are too long, and do nothing else: for levels, whose nodes are heavy and far apart, so
 /// that they turn little.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Pull {
+pub(in crate::solver) struct TensionOnly {
     pub spring: Scaled,
     /// Factor on the rest lengths, 1 or more.
     pub give: f32,
 }
 
-impl<S: Simd, F: Wide<S>> Laws<S, F> for Pull {
-    type Law = Scaled;
+impl<S: Simd, F: Wide<S>> StrandLaws<S, F> for TensionOnly {
+    type WideSpringLaw = Scaled;
 
     const ONLY_PULLS: bool = true;
 
@@ -210,50 +210,50 @@ impl<S: Simd, F: Wide<S>> Laws<S, F> for Pull {
 
 /// Threads of a sheet.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct SheetThreads<'a> {
+pub(in crate::solver) struct GridStrandLaws<'a> {
     /// Parts of C and of -G that each spring has, over its rest length, 1/m.
     pub shares: &'a [[Lane; 2]],
-    pub grading: Grading,
+    pub grading: DirectionModuli,
 }
 
-impl<S: Simd, F: Wide<S>> Laws<S, F> for SheetThreads<'_> {
-    type Law = Graded<F>;
+impl<S: Simd, F: Wide<S>> StrandLaws<S, F> for GridStrandLaws<'_> {
+    type WideSpringLaw = ShareLaw<F>;
 
     const ONLY_PULLS: bool = false;
 
     #[inline(always)]
-    fn at(&self, simd: S, at: usize, stride: usize) -> Graded<F> {
-        let Grading { stretch, shear, half_stiffening, compression, damping } = self.grading;
+    fn at(&self, simd: S, at: usize, stride: usize) -> ShareLaw<F> {
+        let DirectionModuli { stretch, shear, half_stiffening, compression, damping } = self.grading;
         let lanes = self.shares.as_flattened();
         let part = |i: usize| F::load(simd, lanes, 2 * at + i, 2 * stride);
         let k = part(0) * stretch - part(1) * shear;
         // A cell that is very long and narrow would need springs that push apart.
         let per_length = k.max(F::splat(simd, 0.0));
-        Graded { per_length, half_stiffening: F::splat(simd, half_stiffening), compression, damping }
+        ShareLaw { per_length, half_stiffening: F::splat(simd, half_stiffening), compression, damping }
     }
 }
 
 /// Threads of a sheet that go along any direction.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct AnyThreads<'a> {
+pub(in crate::solver) struct GatheredStrandLaws<'a> {
     /// Parts of Cu, Cv and -G that each spring has, over its rest length, 1/m.
     pub shares: &'a [[Lane; 3]],
     /// By [`Grain::index`].
-    pub gradings: [Grading; 2],
+    pub gradings: [DirectionModuli; 2],
 }
 
-impl<S: Simd, F: Wide<S>> Laws<S, F> for AnyThreads<'_> {
-    type Law = Graded<F>;
+impl<S: Simd, F: Wide<S>> StrandLaws<S, F> for GatheredStrandLaws<'_> {
+    type WideSpringLaw = ShareLaw<F>;
 
     const ONLY_PULLS: bool = false;
 
     #[inline(always)]
-    fn at(&self, simd: S, at: usize, stride: usize) -> Graded<F> {
+    fn at(&self, simd: S, at: usize, stride: usize) -> ShareLaw<F> {
         let [along_warp, along_weft] = self.gradings;
         let lanes = self.shares.as_flattened();
         let part = |i: usize| F::load(simd, lanes, 3 * at + i, 3 * stride);
         let (warp, weft) = (part(0), part(1));
         let k = warp * along_warp.stretch + weft * along_weft.stretch - part(2) * along_warp.shear;
-        Graded::along(simd, [warp, weft], k.max(F::splat(simd, 0.0)), self.gradings)
+        ShareLaw::along(simd, [warp, weft], k.max(F::splat(simd, 0.0)), self.gradings)
     }
 }

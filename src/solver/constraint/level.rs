@@ -19,19 +19,19 @@ use bevy::math::Vec3A;
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    law::{Pull, Scaled},
-    plate::Plate,
+    law::{TensionOnly, Scaled},
+    bend_factors::BendFactors,
     tether::{self, PinPlaces, TetherBlock},
-    weave::{self, Last, Loom, Sheet, Weaver},
-    yarn::Yarn,
+    weave::{self, StrandDirection, StrandScratch, GridView, GridStrandSolver},
+    yarn::StrandMaterial,
 };
 use crate::solver::{
     Lanes, Level, LevelPass, Tethers,
     lanes::{Block, Points},
-    level::{Between, Spread, Transfer},
+    level::{LinearWeights, Prolongation, TransferOperator},
     order::{Band, Order},
-    share::Bench,
-    simd::{Instructions, LANES, Lane, Vec3x8, lane},
+    share::WorkerScratch,
+    simd::{SimdLevel, LANES, Lane, Vec3x8, lane},
 };
 
 /// By how much less than tethers a level gives, no unit: what it leaves, the fine strands are left with.
@@ -39,7 +39,7 @@ const TAUTER: f32 = 0.005;
 
 /// The nodes of a level during a step.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Nodes {
+pub(in crate::solver) struct LevelNodes {
     order: Order,
     position: Points,
     /// Where they started, and in the end how far they went, m.
@@ -51,22 +51,22 @@ pub(in crate::solver) struct Nodes {
 /// Buffers of all levels.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Levels {
-    nodes: Vec<Nodes>,
+    nodes: Vec<LevelNodes>,
 }
 
 /// What the levels need to know of a substep.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct LevelRun<'a> {
+pub(in crate::solver) struct LevelSolve<'a> {
     pub levels: &'a [Level],
     pub passes: &'a [LevelPass],
     pub tethers: &'a Tethers,
     pub slack: f32,
     pub stretch: Scaled,
-    pub last: Last,
-    pub instructions: Instructions,
+    pub last: StrandDirection,
+    pub simd_level: SimdLevel,
 }
 
-impl LevelRun<'_> {
+impl LevelSolve<'_> {
     /// Iterations of a level.
     fn iterations(&self, level: &Level) -> u32 {
         self.passes.iter().find(|pass| pass.stride == level.stride).map_or(0, |pass| pass.iterations)
@@ -82,10 +82,10 @@ impl LevelRun<'_> {
 
 impl Levels {
     /// Makes room, and gives the nodes their masses, once a step.
-    pub fn fit(&mut self, run: &LevelRun, lanes: &Lanes) {
-        self.nodes.resize_with(self.nodes.len().max(run.levels.len()), Nodes::default);
+    pub fn fit(&mut self, run: &LevelSolve, lanes: &Lanes) {
+        self.nodes.resize_with(self.nodes.len().max(run.levels.len()), LevelNodes::default);
         for i in run.used() {
-            self.nodes[i].fit(&run.levels[i], lanes, run.instructions);
+            self.nodes[i].fit(&run.levels[i], lanes, run.simd_level);
         }
     }
 
@@ -93,33 +93,33 @@ impl Levels {
     /// others at once.
     pub fn solve(
         &mut self,
-        run: &LevelRun,
+        run: &LevelSolve,
         lanes: &mut Lanes,
         pins: &PinPlaces,
-        Bench { loom, across, .. }: &mut Bench,
+        WorkerScratch { strand_scratch, across, .. }: &mut WorkerScratch,
     ) {
         let nodes = &mut self.nodes;
-        let mut coarser: Option<&Nodes> = None;
+        let mut coarser: Option<&LevelNodes> = None;
         for ((i, level), nodes) in run.used().zip(&run.levels[run.used()]).zip(&mut nodes[run.used()]) {
             nodes.restrict(level, lanes);
             if let (Some(coarser), Some(spread)) = (coarser, &level.from_coarser) {
-                let Nodes { order, position, inverse_mass, .. } = nodes;
+                let LevelNodes { order, position, inverse_mass, .. } = nodes;
                 for band in order.bands() {
                     let (position, inverse_mass) = (&mut position.0[band.blocks()], &inverse_mass[band.blocks()]);
-                    coarser.prolong(spread, band, position, inverse_mass, across, run.instructions);
+                    coarser.prolong(spread, band, position, inverse_mass, across, run.simd_level);
                 }
             }
             let tethers = run.tethers.of_level(i);
             for _ in 0..run.iterations(level) {
-                nodes.iterate(level, run, tethers, pins, loom);
+                nodes.iterate(level, run, tethers, pins, strand_scratch);
             }
             nodes.finish();
             coarser = Some(nodes);
         }
         let finest = run.levels[run.used()].last().map(|level| &level.transfer);
-        if let (Some(nodes), Some(Transfer::Chart { particles, .. })) = (coarser, finest) {
+        if let (Some(nodes), Some(TransferOperator::Chart { particles, .. })) = (coarser, finest) {
             let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
-            let set = run.instructions.level();
+            let set = run.simd_level.level();
             dispatch!(set, simd => nodes.prolong_chart(simd, particles, position, inverse_mass));
         }
     }
@@ -127,21 +127,21 @@ impl Levels {
     /// Moves a band of a lattice along with the finest level. `across` is a buffer.
     pub fn move_band(
         &self,
-        run: &LevelRun,
+        run: &LevelSolve,
         band: Band,
         position: &mut [Block],
         inverse_mass: &[Lane],
         across: &mut Points,
     ) {
         let Some(finest) = run.used().last() else { return };
-        if let Transfer::Lattice { spread, .. } = &run.levels[finest].transfer {
-            self.nodes[finest].prolong(spread, band, position, inverse_mass, across, run.instructions);
+        if let TransferOperator::Lattice { spread, .. } = &run.levels[finest].transfer {
+            self.nodes[finest].prolong(spread, band, position, inverse_mass, across, run.simd_level);
         }
     }
 }
 
-impl Nodes {
-    fn fit(&mut self, level: &Level, lanes: &Lanes, instructions: Instructions) {
+impl LevelNodes {
+    fn fit(&mut self, level: &Level, lanes: &Lanes, simd_level: SimdLevel) {
         self.order = level.lattice.order();
         let blocks = self.order.block_count();
         self.position.resize(blocks);
@@ -150,14 +150,14 @@ impl Nodes {
         self.inverse_mass.resize(blocks, Lane::default());
         let masses = self.inverse_mass.as_flattened_mut();
         match &level.transfer {
-            Transfer::Lattice { slots, .. } => {
+            TransferOperator::Lattice { slots, .. } => {
                 for (mass, &slot) in
                     masses.iter_mut().zip(slots.as_flattened()).filter(|(_, slot)| **slot != Level::NOBODY)
                 {
                     *mass = lanes.inverse_mass(slot as usize) / level.share;
                 }
             }
-            Transfer::Chart { nodes, .. } => {
+            TransferOperator::Chart { nodes, .. } => {
                 for (mass, (corners, weights)) in masses.iter_mut().zip(nodes) {
                     let of_corner = |i: usize| weights[i] * lanes.inverse_mass(corners[i] as usize);
                     *mass = (of_corner(0) + of_corner(1) + of_corner(2)) / level.share;
@@ -167,21 +167,21 @@ impl Nodes {
         self.row_masses.resize(self.order.row_mass_count(), Lane::default());
         for band in self.order.bands() {
             let inverse_mass = &self.inverse_mass[band.blocks()];
-            weave::masses_along_rows(inverse_mass, band, &mut self.row_masses[band.row_masses()], instructions);
+            weave::masses_along_rows(inverse_mass, band, &mut self.row_masses[band.row_masses()], simd_level);
         }
     }
 
     /// Puts the nodes where the cloth is.
     fn restrict(&mut self, level: &Level, lanes: &Lanes) {
         match &level.transfer {
-            Transfer::Lattice { slots, .. } => {
+            TransferOperator::Lattice { slots, .. } => {
                 for (node, &slot) in slots.as_flattened().iter().enumerate() {
                     if slot != Level::NOBODY {
                         self.position.set(node, lanes.position.get(slot as usize));
                     }
                 }
             }
-            Transfer::Chart { nodes, .. } => {
+            TransferOperator::Chart { nodes, .. } => {
                 for (node, (corners, weights)) in nodes.iter().enumerate() {
                     let corner = |i: usize| lanes.position.get(corners[i] as usize) * weights[i];
                     self.position.set(node, corner(0) + corner(1) + corner(2));
@@ -191,15 +191,15 @@ impl Nodes {
         self.way.0.clone_from(&self.position.0);
     }
 
-    fn iterate(&mut self, level: &Level, run: &LevelRun, tethers: &[TetherBlock], pins: &PinPlaces, loom: &mut Loom) {
+    fn iterate(&mut self, level: &Level, run: &LevelSolve, tethers: &[TetherBlock], pins: &PinPlaces, strand_scratch: &mut StrandScratch) {
         let position = &mut self.position.0;
-        tether::solve(position, &self.inverse_mass, 0, tethers, pins, run.slack, run.instructions);
-        let mut sheet =
-            Sheet { position, previous: &self.way.0, inverse_mass: &self.inverse_mass, row_masses: &self.row_masses };
+        tether::solve(position, &self.inverse_mass, 0, tethers, pins, run.slack, run.simd_level);
+        let mut grid =
+            GridView { position, previous: &self.way.0, inverse_mass: &self.inverse_mass, row_masses: &self.row_masses };
         let spring = Scaled { c: 0.0, ..run.stretch };
-        let yarn = Yarn::Pulling(Pull { spring, give: 1.0 + (run.slack - TAUTER).max(0.0) });
-        let weaver = Weaver { lattice: &level.lattice, yarn, plate: &Plate::NONE, instructions: run.instructions };
-        weaver.solve(&mut sheet, run.last, loom);
+        let yarn = StrandMaterial::SpringResponse(TensionOnly { spring, give: 1.0 + (run.slack - TAUTER).max(0.0) });
+        let weaver = GridStrandSolver { lattice: &level.lattice, yarn, bend_factors: &BendFactors::NONE, simd_level: run.simd_level };
+        weaver.solve(&mut grid, run.last, strand_scratch);
     }
 
     /// Works out how far the nodes went.
@@ -214,18 +214,18 @@ impl Nodes {
     /// Moves what is free in a finer band along with the nodes that it lies between.
     fn prolong(
         &self,
-        spread: &Spread,
+        spread: &Prolongation,
         band: Band,
         position: &mut [Block],
         inverse_mass: &[Lane],
         across: &mut Points,
-        instructions: Instructions,
+        simd_level: SimdLevel,
     ) {
         across.resize(self.order.rows);
         let rows = &spread.rows[band.first..][..band.rows];
         let columns = position.chunks_exact_mut(band.rows).zip(inverse_mass.chunks_exact(band.rows));
         let columns = columns.zip(&spread.columns);
-        dispatch!(instructions.level(), simd => {
+        dispatch!(simd_level.level(), simd => {
             for ((places, masses), nodes) in columns {
                 self.prolong_eight(simd, rows, nodes, places, masses, &mut across.0);
             }
@@ -238,7 +238,7 @@ impl Nodes {
     fn prolong_eight<S: Simd>(
         &self,
         simd: S,
-        rows: &[Between],
+        rows: &[LinearWeights],
         nodes: &[(u32, Lane)],
         places: &mut [Block],
         masses: &[Lane],
@@ -254,7 +254,7 @@ impl Nodes {
             }
             way.store(across);
         }
-        for ((place, w), &Between { first, share }) in places.iter_mut().zip(masses).zip(rows) {
+        for ((place, w), &LinearWeights { first, share }) in places.iter_mut().zip(masses).zip(rows) {
             let above = Vec3x8::load(simd, &across[first as usize]);
             let below = Vec3x8::load(simd, &across[first as usize + 1]);
             move_free(simd, place, w, above + (below - above) * f32x8::splat(simd, share));

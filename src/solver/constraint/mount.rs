@@ -15,15 +15,15 @@ use core::ops::Range;
 
 use bevy::math::{Quat, Vec3A};
 
-use crate::solver::{Anchor, Body, Lanes, Push, StepContext, Stray, Topology, lanes::Points};
+use crate::solver::{PinMotion, Body, Lanes, BodyImpulse, StepContext, BodyDisplacement, Topology, lanes::Points};
 
 mod load;
 
-use load::Load;
+use load::CombinedBody;
 
 /// A body that anchors are fixed to, on its way over one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mount {
+pub struct BodyAttachment {
     /// What it takes to move it.
     pub body: Body,
     /// Way of its centre of mass over the step if the cloth didn't pull, m.
@@ -32,8 +32,8 @@ pub struct Mount {
 
 /// An anchor that is fixed to a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Mounted {
-    /// Number of the anchor in [`StepContext::anchors`].
+pub struct AttachedPin {
+    /// Number of the anchor in [`StepContext::pin_motions`].
     pub anchor: u32,
     /// Number of the body in [`StepContext::mounts`].
     pub mount: u32,
@@ -41,17 +41,17 @@ pub struct Mounted {
 
 /// Bodies that have come off their way within a step, and the anchors on them.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Mounts {
-    bodies: Vec<Astray>,
-    anchors: Vec<Held>,
+pub(in crate::solver) struct BodyAttachments {
+    bodies: Vec<AttachedBody>,
+    pin_motions: Vec<PinOnBody>,
     /// What each body has been given, and how far it has come off its path by that.
-    pub pulls: Vec<(Push, Stray)>,
+    pub pulls: Vec<(BodyImpulse, BodyDisplacement)>,
 }
 
 /// How a body has come off its way.
 #[derive(Clone, Copy, Debug)]
-struct Astray {
-    load: Load,
+struct AttachedBody {
+    load: CombinedBody,
     /// Where the body's centre of mass would be, m.
     centre: Vec3A,
     /// How far it is from there, m, and by how much the body has turned.
@@ -67,9 +67,9 @@ struct Astray {
 
 /// An anchor on a body.
 #[derive(Clone, Copy, Debug)]
-struct Held {
+struct PinOnBody {
     slot: usize,
-    anchor: Anchor,
+    anchor: PinMotion,
     mount: usize,
     /// Mass of the cloth there, and the part that it has of the mass of the body and all that is fixed to it, kg.
     own: f32,
@@ -81,8 +81,8 @@ struct Held {
     velocity: Vec3A,
 }
 
-impl Astray {
-    fn new(load: Load, centre: Vec3A) -> Self {
+impl AttachedBody {
+    fn new(load: CombinedBody, centre: Vec3A) -> Self {
         Self {
             load,
             centre,
@@ -130,48 +130,48 @@ impl Astray {
     }
 
     /// What the body itself has been given.
-    fn push(&self, body: &Body) -> Push {
-        Push { linear: self.velocity / body.inverse_mass, angular: self.load.part * self.angular }
+    fn push(&self, body: &Body) -> BodyImpulse {
+        BodyImpulse { linear: self.velocity / body.inverse_mass, angular: self.load.part * self.angular }
     }
 }
 
-impl Mounts {
+impl BodyAttachments {
     /// Begins a step. From now on anchors on bodies can be moved, until they [`rest`](Self::rest).
     pub fn begin(&mut self, lanes: &mut Lanes, topology: &Topology, ctx: &StepContext) {
-        let Self { bodies, anchors, pulls } = self;
+        let Self { bodies, pin_motions, pulls } = self;
         pulls.clear();
-        pulls.resize(ctx.mounts.len(), (Push::default(), Stray::default()));
-        anchors.clear();
-        anchors.extend(ctx.mounted.iter().map(|it| {
-            let (anchor, mount) = (ctx.anchors[it.anchor as usize], it.mount as usize);
+        pulls.resize(ctx.mounts.len(), (BodyImpulse::default(), BodyDisplacement::default()));
+        pin_motions.clear();
+        pin_motions.extend(ctx.mounted.iter().map(|it| {
+            let (anchor, mount) = (ctx.pin_motions[it.anchor as usize], it.mount as usize);
             let own = ctx.material.density * topology.areas[anchor.particle as usize];
             let slot = lanes.order.slot(anchor.particle);
             let arm = anchor.start - ctx.mounts[mount].body.centre;
-            Held { slot, anchor, mount, own, mass: 0.0, arm, place: anchor.start, velocity: lanes.velocity.get(slot) }
+            PinOnBody { slot, anchor, mount, own, mass: 0.0, arm, place: anchor.start, velocity: lanes.velocity.get(slot) }
         }));
         bodies.clear();
         bodies.extend(ctx.mounts.iter().enumerate().map(|(mount, it)| {
-            let on_it = || anchors.iter().filter(|held| held.mount == mount).map(|held| (held.arm, held.own));
-            Astray::new(Load::new(&it.body, on_it), it.body.centre)
+            let on_it = || pin_motions.iter().filter(|held| held.mount == mount).map(|held| (held.arm, held.own));
+            AttachedBody::new(CombinedBody::new(&it.body, on_it), it.body.centre)
         }));
-        for held in &mut *anchors {
+        for held in &mut *pin_motions {
             let load = &bodies[held.mount].load;
-            held.mass = 1.0 / (load.anchors * load.give(held.arm));
+            held.mass = 1.0 / (load.pin_motions * load.give(held.arm));
         }
         // What nothing moves is fixed as any other anchor is.
-        anchors.retain(|held| held.mass.is_finite());
+        pin_motions.retain(|held| held.mass.is_finite());
         self.loosen(lanes);
     }
 
     fn loosen(&self, lanes: &mut Lanes) {
-        for held in &self.anchors {
+        for held in &self.pin_motions {
             lanes.set_inverse_mass(held.slot, 1.0 / held.mass);
         }
     }
 
     /// To all that comes now, anchors on bodies are fixed.
     pub fn rest(&self, lanes: &mut Lanes) {
-        for held in &self.anchors {
+        for held in &self.pin_motions {
             lanes.set_inverse_mass(held.slot, 0.0);
         }
     }
@@ -180,7 +180,7 @@ impl Mounts {
     /// anchors and the `force` (N) there, and the anchors to where they then are.
     pub fn advance(&mut self, lanes: &mut Lanes, ctx: &StepContext, span: Range<f32>, dt: f32, force: Option<&Points>) {
         let h = (span.end - span.start) * dt;
-        for held in &self.anchors {
+        for held in &self.pin_motions {
             let body = &mut self.bodies[held.mount];
             let arm = body.turn * held.arm;
             // What is fixed to the body goes on as before, and falls, while the body is led.
@@ -194,7 +194,7 @@ impl Mounts {
             body.gain(ctx.max_velocity);
             body.go_on(body.velocity, body.spin, h);
         }
-        for held in &mut self.anchors {
+        for held in &mut self.pin_motions {
             let body = &self.bodies[held.mount];
             held.arm = held.anchor.start.lerp(held.anchor.end, span.end) - body.centre;
             held.place = body.place(held.arm);
@@ -206,8 +206,8 @@ impl Mounts {
     /// Gives the bodies what has pulled at their anchors for `h` seconds, puts these where the bodies have them, and has
     /// them rest.
     pub fn settle(&mut self, lanes: &mut Lanes, ctx: &StepContext, h: f32) {
-        let Self { bodies, anchors, pulls } = self;
-        for held in &*anchors {
+        let Self { bodies, pin_motions, pulls } = self;
+        for held in &*pin_motions {
             let pull = (lanes.position.get(held.slot) - held.place) * (held.mass / h);
             let body = &mut bodies[held.mount];
             body.take(body.turn * held.arm, pull);
@@ -215,9 +215,9 @@ impl Mounts {
         for ((body, mount), pull) in bodies.iter_mut().zip(ctx.mounts).zip(&mut *pulls) {
             let [velocity, spin] = body.gain(ctx.max_velocity);
             body.go_on(velocity, spin, h);
-            *pull = (body.push(&mount.body), Stray { shift: body.shift, turn: body.turn });
+            *pull = (body.push(&mount.body), BodyDisplacement { shift: body.shift, turn: body.turn });
         }
-        for held in anchors {
+        for held in pin_motions {
             held.place = bodies[held.mount].place(held.arm);
             held.velocity = (held.place - lanes.previous.get(held.slot)) / h;
             lanes.position.set(held.slot, held.place);
@@ -236,7 +236,7 @@ mod tests {
     #[test]
     fn small_turns_add_up() {
         let body = Body { inverse_mass: 1.0, inverse_inertia: Mat3A::IDENTITY, centre: Vec3A::ZERO };
-        let mut body = Astray::new(Load::new(&body, || [].into_iter()), Vec3A::ZERO);
+        let mut body = AttachedBody::new(CombinedBody::new(&body, || [].into_iter()), Vec3A::ZERO);
         for _ in 0..100 {
             body.go_on(Vec3A::X, Vec3A::Z, 0.01);
         }
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn a_push_is_what_the_body_has_of_all_that_was_taken() {
         let body = Body { inverse_mass: 0.5, inverse_inertia: Mat3A::IDENTITY * 4.0, centre: Vec3A::ZERO };
-        let mut loaded = Astray::new(Load::new(&body, || [(Vec3A::Y, 1.0)].into_iter()), Vec3A::ZERO);
+        let mut loaded = AttachedBody::new(CombinedBody::new(&body, || [(Vec3A::Y, 1.0)].into_iter()), Vec3A::ZERO);
         loaded.take(Vec3A::Y, Vec3A::Z);
         loaded.gain(f32::INFINITY);
         let push = loaded.push(&body);

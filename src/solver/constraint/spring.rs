@@ -16,13 +16,13 @@ use bevy::math::Vec3A;
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
-    beads::Beads,
-    law::{Grading, Law, LooseLaws, Scaled},
+    beads::GatheredParticles,
+    law::{DirectionModuli, WideSpringLaw, GatherLaws, Scaled},
 };
 use crate::solver::{
     Elasticity, Lanes, Material, Spring, SpringBatch, SpringKind,
     lanes::Block,
-    simd::{Instructions, LANES, Lane, SHORTEST, Vec3Wide, Vec3x8, Wide, lane},
+    simd::{SimdLevel, LANES, Lane, SHORTEST, Vec3Wide, Vec3x8, Wide, lane},
 };
 
 /// One end of springs side by side.
@@ -42,7 +42,7 @@ pub(in crate::solver) fn solve_abreast<S: Simd, F: Wide<S>, const DAMPED: bool>(
     a: End<F>,
     b: End<F>,
     rest: F,
-    law: impl Law<S, F>,
+    law: impl WideSpringLaw<S, F>,
 ) -> [Vec3Wide<F>; 2] {
     let along = b.position - a.position;
     let squared = along.dot(along);
@@ -67,7 +67,7 @@ pub(in crate::solver) enum BatchLaw {
     /// All are alike.
     Alike(Scaled),
     /// Each has its share of a sheet.
-    Sheet([Grading; 2]),
+    GridView([DirectionModuli; 2]),
 }
 
 impl BatchLaw {
@@ -78,9 +78,9 @@ impl BatchLaw {
                 Some(Scaled::new(constants[batch.kind.index()], h)).filter(Scaled::acts).map(Self::Alike)
             }
             Elasticity::Moduli(moduli) => batch.carries.then(|| {
-                let gradings = Grading::both(moduli, h);
+                let gradings = DirectionModuli::both(moduli, h);
                 let is_thread = batch.kind == SpringKind::Structural;
-                Self::Sheet(if is_thread { gradings } else { gradings.map(Grading::linear) })
+                Self::GridView(if is_thread { gradings } else { gradings.map(DirectionModuli::linear) })
             }),
         }
     }
@@ -89,38 +89,38 @@ impl BatchLaw {
     pub fn is_damped(&self) -> bool {
         match self {
             Self::Alike(constants) => constants.c > 0.0,
-            Self::Sheet([warp, _]) => warp.damping > 0.0,
+            Self::GridView([warp, _]) => warp.damping > 0.0,
         }
     }
 }
 
 /// Solves the springs of one batch once.
-pub(in crate::solver) fn solve(beads: &mut Beads, springs: &[Spring], law: BatchLaw, instructions: Instructions) {
-    let level = instructions.level();
+pub(in crate::solver) fn solve(beads: &mut GatheredParticles, springs: &[Spring], law: BatchLaw, simd_level: SimdLevel) {
+    let level = simd_level.level();
     match (law, law.is_damped()) {
         (BatchLaw::Alike(law), false) => {
             dispatch!(level, simd => solve_batch::<_, _, false>(simd, beads, springs, law))
         }
         (BatchLaw::Alike(law), true) => dispatch!(level, simd => solve_batch::<_, _, true>(simd, beads, springs, law)),
-        (BatchLaw::Sheet(law), false) => {
+        (BatchLaw::GridView(law), false) => {
             dispatch!(level, simd => solve_batch::<_, _, false>(simd, beads, springs, law))
         }
-        (BatchLaw::Sheet(law), true) => dispatch!(level, simd => solve_batch::<_, _, true>(simd, beads, springs, law)),
+        (BatchLaw::GridView(law), true) => dispatch!(level, simd => solve_batch::<_, _, true>(simd, beads, springs, law)),
     }
 }
 
 /// The same for springs that are few among many particles, as along the seam of a tube: the particles stay where they
 /// are.
-pub(in crate::solver) fn solve_few(lanes: &mut Lanes, springs: &[Spring], law: BatchLaw, instructions: Instructions) {
-    let level = instructions.level();
+pub(in crate::solver) fn solve_few(lanes: &mut Lanes, springs: &[Spring], law: BatchLaw, simd_level: SimdLevel) {
+    let level = simd_level.level();
     match law {
         BatchLaw::Alike(law) => dispatch!(level, simd => solve_scattered(simd, lanes, springs, law)),
-        BatchLaw::Sheet(law) => dispatch!(level, simd => solve_scattered(simd, lanes, springs, law)),
+        BatchLaw::GridView(law) => dispatch!(level, simd => solve_scattered(simd, lanes, springs, law)),
     }
 }
 
 #[inline(always)]
-fn solve_scattered<S: Simd>(simd: S, lanes: &mut Lanes, springs: &[Spring], laws: impl LooseLaws) {
+fn solve_scattered<S: Simd>(simd: S, lanes: &mut Lanes, springs: &[Spring], laws: impl GatherLaws) {
     for springs in springs.chunks(LANES) {
         let mut ends = [(Block::default(), Block::default(), Lane::default()); 2];
         let (mut rest, mut eight) = (Lane::default(), [Spring::default(); LANES]);
@@ -159,23 +159,23 @@ fn end<S: Simd>(simd: S, (position, previous, inverse_mass): &(Block, Block, Lan
 
 /// Springs of one batch share no particle, so any eight of them may be solved side by side.
 #[inline(always)]
-fn solve_batch<S: Simd, L: LooseLaws, const DAMPED: bool>(simd: S, beads: &mut Beads, springs: &[Spring], laws: L) {
+fn solve_batch<S: Simd, L: GatherLaws, const DAMPED: bool>(simd: S, beads: &mut GatheredParticles, springs: &[Spring], laws: L) {
     let (groups, rest) = springs.as_chunks::<LANES>();
     for springs in groups {
         solve_gathered::<S, L, DAMPED>(simd, beads, springs, laws);
     }
     if !rest.is_empty() {
-        let nobody = beads.nobody();
-        let mut springs = [Spring { a: nobody, b: nobody, ..Spring::default() }; LANES];
+        let dummy = beads.dummy();
+        let mut springs = [Spring { a: dummy, b: dummy, ..Spring::default() }; LANES];
         springs[..rest.len()].copy_from_slice(rest);
         solve_gathered::<S, L, DAMPED>(simd, beads, &springs, laws);
     }
 }
 
 #[inline(always)]
-fn solve_gathered<S: Simd, L: LooseLaws, const DAMPED: bool>(
+fn solve_gathered<S: Simd, L: GatherLaws, const DAMPED: bool>(
     simd: S,
-    beads: &mut Beads,
+    beads: &mut GatheredParticles,
     springs: &[Spring; LANES],
     laws: L,
 ) {
@@ -208,7 +208,7 @@ mod tests {
             inverse_mass: vec![0.0, 2.0],
             force: vec![Vec3A::ZERO; 2],
         };
-        lanes.load(&particles, Order::plain(2), Instructions::Best);
+        lanes.load(&particles, Order::plain(2), SimdLevel::Best);
         lanes.previous = lanes.position.clone();
         lanes
     }
@@ -217,11 +217,11 @@ mod tests {
         let springs = [Spring { a: 0, b: 1, rest: 1.0, ..Spring::default() }];
         let constants = BatchLaw::Alike(Scaled::new(SpringConstants { stiffness, damping }, 0.1));
         let few = &mut lanes.clone();
-        solve_few(few, &springs, constants, Instructions::Best);
-        let mut beads = Beads::default();
-        beads.read(lanes, damping > 0.0, Instructions::Best);
-        solve(&mut beads, &springs, constants, Instructions::Best);
-        beads.write(lanes, Instructions::Best);
+        solve_few(few, &springs, constants, SimdLevel::Best);
+        let mut beads = GatheredParticles::default();
+        beads.read(lanes, damping > 0.0, SimdLevel::Best);
+        solve(&mut beads, &springs, constants, SimdLevel::Best);
+        beads.write(lanes, SimdLevel::Best);
         assert_eq!(
             few.position.get(1).to_array().map(f32::to_bits),
             lanes.position.get(1).to_array().map(f32::to_bits)

@@ -33,7 +33,7 @@
 use fearless_simd::prelude::*;
 
 use super::{
-    law::{Law, Laws, Scaled},
+    law::{WideSpringLaw, StrandLaws, Scaled},
     spring::{End, solve_abreast},
 };
 use crate::solver::{
@@ -42,7 +42,7 @@ use crate::solver::{
 };
 
 /// Eight threads side by side, node after node; or two times eight, those of the second pack after all of the first.
-pub(in crate::solver) struct Pack<'a> {
+pub(in crate::solver) struct StrandLanes<'a> {
     /// Positions, m.
     pub position: &'a mut [Block],
     /// Positions before the substep, m; read only where springs are damped.
@@ -55,7 +55,7 @@ pub(in crate::solver) struct Pack<'a> {
 
 /// What elimination leaves of the row of each spring from a node to the next.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Rows {
+pub(in crate::solver) struct EliminationRows {
     /// The right side, over the pivot.
     right: Vec<Lane>,
     /// The entry of the row before in the column of this one, over the pivot.
@@ -66,7 +66,7 @@ pub(in crate::solver) struct Rows {
     pub(super) bends: Vec<Block>,
 }
 
-impl Rows {
+impl EliminationRows {
     /// Makes room for as many nodes.
     pub fn make_room(&mut self, count: usize) {
         for lanes in [&mut self.right, &mut self.upper, &mut self.border] {
@@ -78,21 +78,21 @@ impl Rows {
 
 /// The springs of threads side by side from each node to the next.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Springs<'a, L> {
+pub(in crate::solver) struct StrandSprings<'a, L> {
     /// Rest lengths, m, one for each node; where it is zero, there is no spring.
     pub rest: &'a [Lane],
     pub laws: L,
 }
 
 /// A spring's row of the system: its direction, its factor t on both sides, its diagonal entry and its right side.
-pub(super) struct Row<F> {
+pub(super) struct EliminationRow<F> {
     pub along: Vec3Wide<F>,
     pub factor: F,
     pub diagonal: F,
     pub right: F,
 }
 
-impl Pack<'_> {
+impl StrandLanes<'_> {
     #[inline(always)]
     pub(super) fn end<S: Simd, F: Wide<S>, const DAMPED: bool>(&self, simd: S, j: usize) -> End<F> {
         let position = Vec3Wide::load_at(simd, self.position, j, self.stride);
@@ -103,12 +103,12 @@ impl Pack<'_> {
     /// Solves the springs from each of `count` nodes to the next, and of a `CLOSED` ring the one from the last to the
     /// first.
     #[inline(always)]
-    pub fn solve<S: Simd, F: Wide<S>, L: Laws<S, F>, const DAMPED: bool, const CLOSED: bool>(
+    pub fn solve<S: Simd, F: Wide<S>, L: StrandLaws<S, F>, const DAMPED: bool, const CLOSED: bool>(
         &mut self,
         simd: S,
         count: usize,
-        springs: Springs<L>,
-        rows: &mut Rows,
+        springs: StrandSprings<L>,
+        rows: &mut EliminationRows,
     ) {
         let closing = self.eliminate::<S, F, L, DAMPED, CLOSED>(simd, count, springs, rows);
         self.substitute::<S, F, L, CLOSED>(simd, count, rows, closing);
@@ -116,18 +116,18 @@ impl Pack<'_> {
 
     /// From the first node to the last.
     #[inline(always)]
-    fn eliminate<S: Simd, F: Wide<S>, L: Laws<S, F>, const DAMPED: bool, const CLOSED: bool>(
+    fn eliminate<S: Simd, F: Wide<S>, L: StrandLaws<S, F>, const DAMPED: bool, const CLOSED: bool>(
         &self,
         simd: S,
         count: usize,
-        springs: Springs<L>,
-        rows: &mut Rows,
-    ) -> Row<F> {
+        springs: StrandSprings<L>,
+        rows: &mut EliminationRows,
+    ) -> EliminationRow<F> {
         let stride = self.stride;
         let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
         let last = count - 1;
         let first = self.end::<S, F, DAMPED>(simd, 0);
-        let mut closing = Row { along: Vec3Wide::splat(simd, [0.0; 3]), factor: none, diagonal: one, right: none };
+        let mut closing = EliminationRow { along: Vec3Wide::splat(simd, [0.0; 3]), factor: none, diagonal: one, right: none };
         let mut border = none;
         if CLOSED {
             let ends = [self.end::<S, F, DAMPED>(simd, last), first];
@@ -169,12 +169,12 @@ impl Pack<'_> {
     /// From the last node back to the first, which leaves each place but for its share of the one before, and on to the
     /// last again.
     #[inline(always)]
-    fn substitute<S: Simd, F: Wide<S>, L: Laws<S, F>, const CLOSED: bool>(
+    fn substitute<S: Simd, F: Wide<S>, L: StrandLaws<S, F>, const CLOSED: bool>(
         &mut self,
         simd: S,
         count: usize,
-        rows: &mut Rows,
-        closing: Row<F>,
+        rows: &mut EliminationRows,
+        closing: EliminationRow<F>,
     ) {
         let stride = self.stride;
         let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
@@ -260,7 +260,7 @@ impl Pack<'_> {
     }
 }
 
-impl<L> Springs<'_, L> {
+impl<L> StrandSprings<'_, L> {
     /// The rows of springs side by side, that after node `at` of the first pack. Those that aren't there, have no length
     /// or are slack where they only pull have no direction.
     #[inline(always)]
@@ -270,27 +270,27 @@ impl<L> Springs<'_, L> {
         [here, next]: [End<F>; 2],
         at: usize,
         stride: usize,
-    ) -> Row<F>
+    ) -> EliminationRow<F>
     where
-        L: Laws<S, F>,
+        L: StrandLaws<S, F>,
     {
         let mut rest = F::load(simd, self.rest, at, stride);
         if L::ONLY_PULLS {
             rest *= self.laws.give();
         }
         let longer_than = if L::ONLY_PULLS { rest } else { F::splat(simd, SHORTEST) };
-        Row::new::<S, DAMPED>(simd, [here, next], [rest, longer_than], self.laws.at(simd, at, stride))
+        EliminationRow::new::<S, DAMPED>(simd, [here, next], [rest, longer_than], self.laws.at(simd, at, stride))
     }
 }
 
-impl<F> Row<F> {
+impl<F> EliminationRow<F> {
     /// The rows of springs side by side with these rest lengths, which act where they are longer than the others, m.
     #[inline(always)]
     pub(super) fn new<S: Simd, const DAMPED: bool>(
         simd: S,
         [here, next]: [End<F>; 2],
         [rest, longer_than]: [F; 2],
-        law: impl Law<S, F>,
+        law: impl WideSpringLaw<S, F>,
     ) -> Self
     where
         F: Wide<S>,
@@ -319,6 +319,6 @@ impl<F> Row<F> {
 
 /// What a spring that only pulls may do.
 #[inline(always)]
-fn pulling<S: Simd, F: Wide<S>, L: Laws<S, F>>(simd: S, mu: F) -> F {
+fn pulling<S: Simd, F: Wide<S>, L: StrandLaws<S, F>>(simd: S, mu: F) -> F {
     if L::ONLY_PULLS { mu.min(F::splat(simd, 0.0)) } else { mu }
 }

@@ -12,9 +12,9 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 use crate::solver::{
     Lanes, Level, Topology,
     lanes::Block,
-    level::Transfer,
+    level::TransferOperator,
     order::Order,
-    simd::{Instructions, LANES, Lane, Vec3x8, lane},
+    simd::{SimdLevel, LANES, Lane, Vec3x8, lane},
 };
 
 /// The longest distance that a particle may have from a fixed one.
@@ -155,8 +155,8 @@ impl Tethers {
 /// Blocks of the tethers of a level's nodes, given those `of` slots.
 fn tethers_of_level(level: &Level, of: impl Fn(u32) -> Vec<Tether>) -> Vec<TetherBlock> {
     match &level.transfer {
-        Transfer::Lattice { slots, .. } => side_by_side(slots.iter().map(|block| block.map(&of))),
-        Transfer::Chart { nodes, .. } => {
+        TransferOperator::Lattice { slots, .. } => side_by_side(slots.iter().map(|block| block.map(&of))),
+        TransferOperator::Chart { nodes, .. } => {
             let tethers: Vec<Vec<Tether>> = nodes.iter().map(|node| tethers_between(node, &of)).collect();
             let block = |nodes: &[Vec<Tether>]| core::array::from_fn(|l| nodes.get(l).cloned().unwrap_or_default());
             side_by_side(tethers.chunks(LANES).map(block))
@@ -215,12 +215,12 @@ pub(in crate::solver) fn solve(
     tethers: &[TetherBlock],
     pins: &PinPlaces,
     slack: f32,
-    instructions: Instructions,
+    simd_level: SimdLevel,
 ) {
     let before = |block: usize| tethers.partition_point(|tether| (tether.block as usize) < block);
     let tethers = &tethers[before(first)..before(first + position.len())];
     let pins = &pins.0;
-    dispatch!(instructions.level(), simd => solve_blocks(simd, position, inverse_mass, first, tethers, pins, slack));
+    dispatch!(simd_level.level(), simd => solve_blocks(simd, position, inverse_mass, first, tethers, pins, slack));
 }
 
 #[inline(always)]

@@ -8,22 +8,22 @@ use core::ops::Range;
 use fearless_simd::{dispatch, f32x8, f32x16, prelude::*};
 
 use super::{
-    curvature::{Bends, Factor},
-    law::{Laws, Scaled, SheetThreads},
-    plate::Plate,
-    strand::{Pack, Rows, Springs},
-    yarn::Yarn,
+    curvature::{StrandBends, Factor},
+    law::{StrandLaws, Scaled, GridStrandLaws},
+    bend_factors::BendFactors,
+    strand::{StrandLanes, EliminationRows, StrandSprings},
+    yarn::StrandMaterial,
 };
 use crate::solver::{
-    Anchor, Lattice,
+    PinMotion, Lattice,
     lanes::Block,
-    lattice::Threads,
+    lattice::StrandSet,
     order::{Band, Order},
-    simd::{Instructions, LANES, Lane, Wide, lane, transpose},
+    simd::{SimdLevel, LANES, Lane, Wide, lane, transpose},
 };
 
 /// The particles of a lattice during a substep.
-pub(in crate::solver) struct Sheet<'a> {
+pub(in crate::solver) struct GridView<'a> {
     pub position: &'a mut [Block],
     /// Positions before the substep; read only where springs are damped.
     pub previous: &'a [Block],
@@ -32,11 +32,11 @@ pub(in crate::solver) struct Sheet<'a> {
     pub row_masses: &'a [Lane],
 }
 
-impl Sheet<'_> {
+impl GridView<'_> {
     /// What is in a band of the whole lattice.
-    pub fn band(&mut self, band: Band) -> Sheet<'_> {
+    pub fn band(&mut self, band: Band) -> GridView<'_> {
         let blocks = band.blocks();
-        Sheet {
+        GridView {
             position: &mut self.position[blocks.clone()],
             previous: &self.previous[blocks.clone()],
             inverse_mass: &self.inverse_mass[blocks],
@@ -47,14 +47,14 @@ impl Sheet<'_> {
 
 /// Buffers for threads that are being solved.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Loom {
-    pub rows: Rows,
+pub(in crate::solver) struct StrandScratch {
+    pub rows: EliminationRows,
     pub position: Vec<Block>,
     pub previous: Vec<Block>,
     pub inverse_mass: Vec<Lane>,
 }
 
-impl Loom {
+impl StrandScratch {
     /// Makes room for as many nodes.
     pub fn make_room(&mut self, count: usize) {
         self.rows.make_room(count);
@@ -70,11 +70,11 @@ pub(in crate::solver) fn masses_along_rows(
     inverse_mass: &[Lane],
     band: Band,
     along_rows: &mut [Lane],
-    instructions: Instructions,
+    simd_level: SimdLevel,
 ) {
     let columns = inverse_mass.chunks_exact(band.rows);
     let nodes = columns.len() * LANES;
-    dispatch!(instructions.level(), simd => {
+    dispatch!(simd_level.level(), simd => {
         for (pack, some) in along_rows.chunks_exact_mut(nodes).zip(packs_of_rows(0..band.rows)) {
             for (nodes, column) in pack.chunks_exact_mut(LANES).zip(columns.clone()) {
                 across(simd, column[some.clone()].iter(), nodes.iter_mut());
@@ -85,12 +85,12 @@ pub(in crate::solver) fn masses_along_rows(
 
 /// Which threads are solved last: they are held best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::solver) enum Last {
+pub(in crate::solver) enum StrandDirection {
     Rows,
     Columns,
 }
 
-impl Last {
+impl StrandDirection {
     /// Both, in their order.
     pub fn order(self) -> [Self; 2] {
         match self {
@@ -101,94 +101,94 @@ impl Last {
 
     /// The threads that carry the most: those that go from pin to pin where few pins are far apart, and those that hang
     /// from them where pins stand close.
-    pub fn between(anchors: &[Anchor], order: Order) -> Self {
+    pub fn between(pin_motions: &[PinMotion], order: Order) -> Self {
         let place =
-            |anchor: &Anchor| (anchor.particle as usize / order.columns, anchor.particle as usize % order.columns);
+            |anchor: &PinMotion| (anchor.particle as usize / order.columns, anchor.particle as usize % order.columns);
         let spread = |of: fn((usize, usize)) -> usize| {
-            let places = anchors.iter().map(|anchor| of(place(anchor)));
+            let places = pin_motions.iter().map(|anchor| of(place(anchor)));
             places.clone().max().unwrap_or(0) - places.min().unwrap_or(0)
         };
         let (across, down) = (spread(|(_, column)| column), spread(|(row, _)| row));
-        let are_far_apart = 2 * anchors.len() <= across.max(down);
+        let are_far_apart = 2 * pin_motions.len() <= across.max(down);
         if (across > down) == are_far_apart { Self::Rows } else { Self::Columns }
     }
 }
 
 /// How the threads of a lattice are solved.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Weaver<'a> {
+pub(in crate::solver) struct GridStrandSolver<'a> {
     pub lattice: &'a Lattice,
-    pub yarn: Yarn,
-    pub plate: &'a Plate,
-    pub instructions: Instructions,
+    pub yarn: StrandMaterial,
+    pub bend_factors: &'a BendFactors,
+    pub simd_level: SimdLevel,
 }
 
-impl Weaver<'_> {
+impl GridStrandSolver<'_> {
     /// Solves all columns and all rows.
-    pub fn solve(&self, sheet: &mut Sheet, last: Last, loom: &mut Loom) {
+    pub fn solve(&self, grid: &mut GridView, last: StrandDirection, strand_scratch: &mut StrandScratch) {
         for threads in last.order() {
             match threads {
-                Last::Columns => self.solve_columns(sheet, loom),
-                Last::Rows => {
+                StrandDirection::Columns => self.solve_columns(grid, strand_scratch),
+                StrandDirection::Rows => {
                     for band in self.lattice.order().bands() {
-                        self.solve_rows(&mut sheet.band(band), band, loom);
+                        self.solve_rows(&mut grid.band(band), band, strand_scratch);
                     }
                 }
             }
         }
     }
 
-    fn solve_columns(&self, sheet: &mut Sheet, loom: &mut Loom) {
+    fn solve_columns(&self, grid: &mut GridView, strand_scratch: &mut StrandScratch) {
         let order = self.lattice.order();
         if order.bands().len() > 1 {
             for first in (0..order.pack_count()).step_by(2) {
                 for band in order.bands() {
-                    self.take_columns(&sheet.band(band), band, first, loom);
+                    self.take_columns(&grid.band(band), band, first, strand_scratch);
                 }
-                self.solve_taken_columns(first, loom);
+                self.solve_taken_columns(first, strand_scratch);
                 for band in order.bands() {
-                    self.put_columns(loom, sheet.band(band).position, band, first);
+                    self.put_columns(strand_scratch, grid.band(band).position, band, first);
                 }
             }
             return;
         }
         // Of one band, columns can be solved where they stand.
         let stride = order.rows;
-        loom.make_room(2 * stride);
-        let Sheet { position, previous, inverse_mass, .. } = sheet;
+        strand_scratch.make_room(2 * stride);
+        let GridView { position, previous, inverse_mass, .. } = grid;
         let pairs = position.chunks_mut(2 * stride).zip(previous.chunks(2 * stride));
         for (first, ((position, previous), inverse_mass)) in
             (0..).step_by(2).zip(pairs.zip(inverse_mass.chunks(2 * stride)))
         {
-            let mut pack = Pack { position, previous, inverse_mass, stride };
-            self.solve_packs(&mut pack, self.columns(first), &mut loom.rows);
+            let mut pack = StrandLanes { position, previous, inverse_mass, stride };
+            self.solve_packs(&mut pack, self.columns(first), &mut strand_scratch.rows);
         }
     }
 
     /// Takes a band's part of up to two packs of columns from the `first` on to the loom.
-    pub fn take_columns(&self, part: &Sheet, band: Band, first: usize, loom: &mut Loom) {
+    pub fn take_columns(&self, part: &GridView, band: Band, first: usize, strand_scratch: &mut StrandScratch) {
         let stride = self.lattice.rows;
-        loom.make_room(2 * stride);
+        strand_scratch.make_room(2 * stride);
         let packs = self.packs(first);
-        take(part.position, band, stride, packs.clone(), &mut loom.position);
-        take(part.inverse_mass, band, stride, packs.clone(), &mut loom.inverse_mass);
+        take(part.position, band, stride, packs.clone(), &mut strand_scratch.position);
+        take(part.inverse_mass, band, stride, packs.clone(), &mut strand_scratch.inverse_mass);
         if self.yarn.is_damped() {
-            take(part.previous, band, stride, packs, &mut loom.previous);
+            take(part.previous, band, stride, packs, &mut strand_scratch.previous);
         }
     }
 
     /// Solves the columns that were taken.
-    pub fn solve_taken_columns(&self, first: usize, loom: &mut Loom) {
+    pub fn solve_taken_columns(&self, first: usize, strand_scratch: &mut StrandScratch) {
         let stride = self.lattice.rows;
         let count = self.packs(first).len() * stride;
-        let Loom { rows, position, previous, inverse_mass } = loom;
-        let mut pack = Pack { position: &mut position[..count], previous, inverse_mass, stride };
+        let StrandScratch { rows, position, previous, inverse_mass } = strand_scratch;
+        let mut pack = StrandLanes { position: &mut position[..count], previous, inverse_mass, stride };
         self.solve_packs(&mut pack, self.columns(first), rows);
     }
 
     /// Puts a band's part of columns back to where it was taken from.
-    pub fn put_columns(&self, loom: &Loom, position: &mut [Block], band: Band, first: usize) {
-        let taken = loom.position.chunks_exact(self.lattice.rows);
+    pub fn put_columns(&self, strand_scratch: &StrandScratch, position: &mut [Block], band: Band, first: usize) {
+        let taken = strand_scratch.position.chunks_exact(self.lattice.rows);
         for (column, taken) in position.chunks_exact_mut(band.rows).skip(first).zip(taken).take(2) {
             column.copy_from_slice(&taken[band.first..][..band.rows]);
         }
@@ -200,44 +200,44 @@ impl Weaver<'_> {
     }
 
     /// Solves the rows of a band.
-    pub fn solve_rows(&self, part: &mut Sheet, band: Band, loom: &mut Loom) {
-        let (level, threads) = (self.instructions.level(), &self.lattice.along_rows);
+    pub fn solve_rows(&self, part: &mut GridView, band: Band, strand_scratch: &mut StrandScratch) {
+        let (level, threads) = (self.simd_level.level(), &self.lattice.along_rows);
         let nodes = threads.nodes;
-        loom.make_room(2 * nodes);
-        let Sheet { position, previous, row_masses, .. } = part;
+        strand_scratch.make_room(2 * nodes);
+        let GridView { position, previous, row_masses, .. } = part;
         for first in (0..band.rows).step_by(2 * LANES) {
             let some = first..band.rows.min(first + 2 * LANES);
-            dispatch!(level, simd => take_rows(simd, position, band.rows, some.clone(), nodes, &mut loom.position));
+            dispatch!(level, simd => take_rows(simd, position, band.rows, some.clone(), nodes, &mut strand_scratch.position));
             if self.yarn.is_damped() {
-                dispatch!(level, simd => take_rows(simd, previous, band.rows, some.clone(), nodes, &mut loom.previous));
+                dispatch!(level, simd => take_rows(simd, previous, band.rows, some.clone(), nodes, &mut strand_scratch.previous));
             }
-            let Loom { rows, position: taken, previous, .. } = &mut *loom;
+            let StrandScratch { rows, position: taken, previous, .. } = &mut *strand_scratch;
             let (number, count) = ((band.first + first) / LANES, some.len().div_ceil(LANES) * nodes);
             let inverse_mass = &row_masses[first / LANES * nodes..][..count];
-            let mut pack = Pack { position: &mut taken[..count], previous, inverse_mass, stride: nodes };
+            let mut pack = StrandLanes { position: &mut taken[..count], previous, inverse_mass, stride: nodes };
             self.solve_packs(&mut pack, self.rows(number), rows);
             dispatch!(level, simd => put_rows(simd, taken, nodes, position, band.rows, some));
         }
     }
 
     /// The columns of some packs from the `first` on.
-    fn columns(&self, first: usize) -> ThreadRun<'_> {
-        self.run(&self.lattice.along_columns, &self.plate.columns, &self.plate.rest.columns, first)
+    fn columns(&self, first: usize) -> StrandRun<'_> {
+        self.run(&self.lattice.along_columns, &self.bend_factors.columns, &self.bend_factors.rest.columns, first)
     }
 
     /// The rows of some packs from the `first` on.
-    fn rows(&self, first: usize) -> ThreadRun<'_> {
-        self.run(&self.lattice.along_rows, &self.plate.rows, &self.plate.rest.rows, first)
+    fn rows(&self, first: usize) -> StrandRun<'_> {
+        self.run(&self.lattice.along_rows, &self.bend_factors.rows, &self.bend_factors.rest.rows, first)
     }
 
-    fn run<'a>(&self, threads: &'a Threads, factors: &'a [Factor], rest: &'a [Block], first: usize) -> ThreadRun<'a> {
+    fn run<'a>(&self, threads: &'a StrandSet, factors: &'a [Factor], rest: &'a [Block], first: usize) -> StrandRun<'a> {
         let first = first * threads.nodes;
-        ThreadRun { threads, first, factors: from(factors, first), rest: from(rest, first), yarn: self.yarn }
+        StrandRun { threads, first, factors: from(factors, first), rest: from(rest, first), yarn: self.yarn }
     }
 
     /// Solves one or two packs of threads.
-    fn solve_packs(&self, pack: &mut Pack, run: ThreadRun, rows: &mut Rows) {
-        let level = self.instructions.level();
+    fn solve_packs(&self, pack: &mut StrandLanes, run: StrandRun, rows: &mut EliminationRows) {
+        let level = self.simd_level.level();
         match (pack.position.len() > pack.stride, self.yarn.is_stretch_damped()) {
             (true, false) => dispatch!(level, simd => run.solve::<_, f32x16<_>, false>(simd, pack, rows)),
             (true, true) => dispatch!(level, simd => run.solve::<_, f32x16<_>, true>(simd, pack, rows)),
@@ -287,25 +287,25 @@ fn put_rows<S: Simd>(simd: S, taken: &[Block], nodes: usize, columns: &mut [Bloc
 
 /// One or two packs of threads that are being solved.
 #[derive(Clone, Copy)]
-struct ThreadRun<'a> {
-    threads: &'a Threads,
+struct StrandRun<'a> {
+    threads: &'a StrandSet,
     /// Where the first pack begins among all nodes.
     first: usize,
     /// The matrix of these packs' bends.
     factors: &'a [Factor],
     /// What the bends of these packs are at rest, m; empty where the cloth is flat.
     rest: &'a [Block],
-    yarn: Yarn,
+    yarn: StrandMaterial,
 }
 
-impl ThreadRun<'_> {
+impl StrandRun<'_> {
     #[inline(always)]
-    fn solve<S: Simd, F: Wide<S>, const DAMPED: bool>(&self, simd: S, pack: &mut Pack, rows: &mut Rows) {
+    fn solve<S: Simd, F: Wide<S>, const DAMPED: bool>(&self, simd: S, pack: &mut StrandLanes, rows: &mut EliminationRows) {
         let Self { threads, first, .. } = *self;
         let count = threads.count;
         // What comes last is held best: stretch shows more than bending.
         match self.yarn {
-            Yarn::Alike { stretch, bend } => {
+            StrandMaterial::Alike { stretch, bend } => {
                 if let Some(bend) = bend {
                     pack.solve_bends::<S, F, DAMPED>(simd, count, &threads.bend[first..], bend);
                 }
@@ -313,8 +313,8 @@ impl ThreadRun<'_> {
                     self.stretch::<S, F, _, DAMPED>(simd, pack, stretch, rows);
                 }
             }
-            Yarn::Pulling(pull) => self.stretch::<S, F, _, false>(simd, pack, pull, rows),
-            Yarn::Sheet { stretch, rigidity } => {
+            StrandMaterial::SpringResponse(pull) => self.stretch::<S, F, _, false>(simd, pack, pull, rows),
+            StrandMaterial::GridView { stretch, rigidity } => {
                 if let Some(rigidity) = rigidity {
                     if rigidity.c > 0.0 {
                         self.bend::<S, true>(simd, pack, rigidity, rows);
@@ -323,7 +323,7 @@ impl ThreadRun<'_> {
                     }
                 }
                 let grading = stretch[threads.grain.index()];
-                let laws = SheetThreads { shares: &threads.shares[first..], grading };
+                let laws = GridStrandLaws { shares: &threads.shares[first..], grading };
                 self.stretch::<S, F, _, DAMPED>(simd, pack, laws, rows);
             }
         }
@@ -331,16 +331,16 @@ impl ThreadRun<'_> {
 
     /// One pack after the other: two at once don't fit into the fastest cache.
     #[inline(always)]
-    fn bend<S: Simd, const DAMPED: bool>(&self, simd: S, pack: &mut Pack, rigidity: Scaled, rows: &mut Rows) {
+    fn bend<S: Simd, const DAMPED: bool>(&self, simd: S, pack: &mut StrandLanes, rigidity: Scaled, rows: &mut EliminationRows) {
         let (count, stride) = (self.threads.count, pack.stride);
         for first in (0..pack.position.len()).step_by(stride) {
-            let bends = Bends {
+            let bends = StrandBends {
                 weights: &self.threads.curvature[self.first + first..],
                 rest: from(self.rest, first),
                 factors: &self.factors[first..],
                 rigidity,
             };
-            let mut pack = Pack {
+            let mut pack = StrandLanes {
                 position: &mut pack.position[first..][..stride],
                 previous: if DAMPED { &pack.previous[first..] } else { &[] },
                 inverse_mass: &pack.inverse_mass[first..],
@@ -355,14 +355,14 @@ impl ThreadRun<'_> {
     }
 
     #[inline(always)]
-    fn stretch<S: Simd, F: Wide<S>, L: Laws<S, F>, const DAMPED: bool>(
+    fn stretch<S: Simd, F: Wide<S>, L: StrandLaws<S, F>, const DAMPED: bool>(
         &self,
         simd: S,
-        pack: &mut Pack,
+        pack: &mut StrandLanes,
         laws: L,
-        rows: &mut Rows,
+        rows: &mut EliminationRows,
     ) {
-        let springs = Springs { rest: &self.threads.stretch[self.first..], laws };
+        let springs = StrandSprings { rest: &self.threads.stretch[self.first..], laws };
         if self.threads.closed {
             pack.solve::<S, F, L, DAMPED, true>(simd, self.threads.count, springs, rows);
         } else {

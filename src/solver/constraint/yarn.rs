@@ -1,11 +1,11 @@
 //! What threads are made of, scaled to a substep.
 
-use super::law::{Grading, Pull, Scaled};
+use super::law::{DirectionModuli, TensionOnly, Scaled};
 use crate::solver::{Elasticity, Material, SpringKind};
 
 /// What threads are made of.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) enum Yarn {
+pub(in crate::solver) enum StrandMaterial {
     /// Springs that are alike.
     Alike {
         stretch: Scaled,
@@ -13,17 +13,17 @@ pub(in crate::solver) enum Yarn {
         bend: Option<Scaled>,
     },
     /// Springs of a level, which only pull.
-    Pulling(Pull),
+    SpringResponse(TensionOnly),
     /// The threads of a sheet.
-    Sheet {
+    GridView {
         /// By [`Grain::index`](crate::solver::Grain::index).
-        stretch: [Grading; 2],
+        stretch: [DirectionModuli; 2],
         /// B h² and its damping. None where nothing bends.
         rigidity: Option<Scaled>,
     },
 }
 
-impl Yarn {
+impl StrandMaterial {
     pub fn new(material: &Material, h: f32) -> Self {
         match &material.elasticity {
             Elasticity::Springs(constants) => {
@@ -31,8 +31,8 @@ impl Yarn {
                 let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
                 Self::Alike { stretch: scaled(SpringKind::Structural), bend }
             }
-            Elasticity::Moduli(moduli) => Self::Sheet {
-                stretch: Grading::both(moduli, h),
+            Elasticity::Moduli(moduli) => Self::GridView {
+                stretch: DirectionModuli::both(moduli, h),
                 rigidity: Some(Scaled::new(moduli.rigidity(), h)).filter(Scaled::acts),
             },
         }
@@ -41,8 +41,8 @@ impl Yarn {
     /// Whether it needs to know where the particles were before the substep.
     pub fn is_damped(&self) -> bool {
         let is_bend_damped = match self {
-            Self::Alike { bend, .. } | Self::Sheet { rigidity: bend, .. } => bend.is_some_and(|bend| bend.c > 0.0),
-            Self::Pulling(_) => false,
+            Self::Alike { bend, .. } | Self::GridView { rigidity: bend, .. } => bend.is_some_and(|bend| bend.c > 0.0),
+            Self::SpringResponse(_) => false,
         };
         is_bend_damped || self.is_stretch_damped()
     }
@@ -51,8 +51,8 @@ impl Yarn {
     pub fn is_stretch_damped(&self) -> bool {
         match self {
             Self::Alike { stretch, bend } => stretch.c > 0.0 || bend.is_some_and(|bend| bend.c > 0.0),
-            Self::Pulling(_) => false,
-            Self::Sheet { stretch: [warp, _], .. } => warp.damping > 0.0,
+            Self::SpringResponse(_) => false,
+            Self::GridView { stretch: [warp, _], .. } => warp.damping > 0.0,
         }
     }
 }

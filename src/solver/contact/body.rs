@@ -12,23 +12,23 @@ use core::ops::Range;
 
 use bevy::math::{Isometry3d, Mat3A, Quat, Vec3A};
 
-use super::{Obstacle, Push, Stray};
+use super::{Obstacle, BodyImpulse, BodyDisplacement};
 use crate::solver::StepContext;
 
 /// What bodies do within a step.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Bodies {
     /// Of each obstacle that is one.
-    moved: Vec<Option<Moved>>,
+    moved: Vec<Option<MovedBody>>,
     /// What each obstacle was given.
-    pub pushes: Vec<Push>,
+    pub pushes: Vec<BodyImpulse>,
     /// How far each has come off its path.
-    pub strays: Vec<Stray>,
+    pub strays: Vec<BodyDisplacement>,
 }
 
 /// A body within a step.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Moved {
+pub(in crate::solver) struct MovedBody {
     /// Inverse mass, 1/kg.
     pub inverse_mass: f32,
     /// Inverse of the tensor of inertia along the world's axes, as it is turned now, 1/(kg m²).
@@ -58,11 +58,11 @@ impl Bodies {
     pub fn begin(&mut self, ctx: &StepContext) {
         let Self { moved, pushes, strays } = self;
         moved.clear();
-        moved.extend(ctx.obstacles.iter().map(Moved::new));
+        moved.extend(ctx.obstacles.iter().map(MovedBody::new));
         pushes.clear();
-        pushes.resize(moved.len(), Push::default());
+        pushes.resize(moved.len(), BodyImpulse::default());
         strays.clear();
-        strays.resize(moved.len(), Stray::default());
+        strays.resize(moved.len(), BodyDisplacement::default());
     }
 
     /// Leads all bodies through the part `span` (0..=1) of the step, a substep of `h` seconds, as if they touched nothing.
@@ -76,7 +76,7 @@ impl Bodies {
     }
 
     /// The body that an obstacle is, if it is one.
-    pub fn get(&self, obstacle: usize) -> Option<&Moved> {
+    pub fn get(&self, obstacle: usize) -> Option<&MovedBody> {
         self.moved.get(obstacle)?.as_ref()
     }
 
@@ -116,7 +116,7 @@ impl Bodies {
     }
 }
 
-impl Moved {
+impl MovedBody {
     fn new(obstacle: &Obstacle) -> Option<Self> {
         let body = obstacle.body?;
         Some(Self {
@@ -170,8 +170,8 @@ impl Moved {
         ahead.end
     }
 
-    fn stray(&self) -> Stray {
-        Stray { shift: self.shift, turn: self.turn }
+    fn stray(&self) -> BodyDisplacement {
+        BodyDisplacement { shift: self.shift, turn: self.turn }
     }
 
     fn push(&mut self, linear: Vec3A, angular: Vec3A) {
@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn a_body_that_nobody_pushes_stays_on_its_path() {
-        let mut moved = Moved::new(&ball()).unwrap();
+        let mut moved = MovedBody::new(&ball()).unwrap();
         for i in 1..=4 {
             moved.advance(&ball(), i as f32 / 4.0, 0.1);
         }
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_body_goes_on_with_what_it_was_given() {
-        let mut moved = Moved::new(&ball()).unwrap();
+        let mut moved = MovedBody::new(&ball()).unwrap();
         moved.advance(&ball(), 0.5, 0.1);
         moved.push(Vec3A::Z * 0.02, Vec3A::ZERO);
         assert!((moved.shift.z - 0.01).abs() < 1e-7, "{}", moved.shift);
@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn a_push_turns_a_body_about_its_centre_of_mass() {
-        let mut moved = Moved::new(&ball()).unwrap();
+        let mut moved = MovedBody::new(&ball()).unwrap();
         moved.advance(&ball(), 0.0, 0.1);
         moved.push(Vec3A::ZERO, Vec3A::Z * 1e-3);
         assert!((moved.centre - Vec3A::Y).length() < 1e-6);

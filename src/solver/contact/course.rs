@@ -3,12 +3,12 @@
 use bevy::math::{Isometry3d, Mat3A, Vec3A};
 use fearless_simd::prelude::*;
 
-use super::sweep::Passage;
+use super::sweep::ObstacleSweep;
 use crate::solver::simd::Vec3x8;
 
 /// The frame of an obstacle within one substep.
-pub(super) trait Course<S: Simd>: Copy {
-    fn new(simd: S, passage: &Passage) -> Self;
+pub(super) trait ObstacleFrame<S: Simd>: Copy {
+    fn new(simd: S, passage: &ObstacleSweep) -> Self;
 
     /// A point of the world in the frame as it is at the end.
     fn to_local(&self, point: Vec3x8<S>) -> Vec3x8<S>;
@@ -25,13 +25,13 @@ pub(super) trait Course<S: Simd>: Copy {
 
 /// One that stays and isn't turned.
 #[derive(Clone, Copy)]
-pub(super) struct Shifted<S: Simd> {
+pub(super) struct TranslatedFrame<S: Simd> {
     origin: Vec3x8<S>,
 }
 
 /// One that stays.
 #[derive(Clone, Copy)]
-pub(super) struct Turned<S: Simd> {
+pub(super) struct RotatedFrame<S: Simd> {
     x: Vec3x8<S>,
     y: Vec3x8<S>,
     z: Vec3x8<S>,
@@ -40,16 +40,16 @@ pub(super) struct Turned<S: Simd> {
 
 /// One that moves.
 #[derive(Clone, Copy)]
-pub(super) struct Moving<S: Simd> {
-    start: Turned<S>,
-    end: Turned<S>,
+pub(super) struct MovingFrame<S: Simd> {
+    start: RotatedFrame<S>,
+    end: RotatedFrame<S>,
     /// What leads from the start to the end.
-    between: Turned<S>,
+    between: RotatedFrame<S>,
 }
 
-impl<S: Simd> Course<S> for Shifted<S> {
+impl<S: Simd> ObstacleFrame<S> for TranslatedFrame<S> {
     #[inline(always)]
-    fn new(simd: S, passage: &Passage) -> Self {
+    fn new(simd: S, passage: &ObstacleSweep) -> Self {
         Self { origin: Vec3x8::splat(simd, passage.end.translation.to_array()) }
     }
 
@@ -74,7 +74,7 @@ impl<S: Simd> Course<S> for Shifted<S> {
     }
 }
 
-impl<S: Simd> Turned<S> {
+impl<S: Simd> RotatedFrame<S> {
     #[inline(always)]
     fn of(simd: S, axes: &Mat3A, origin: Vec3A) -> Self {
         Self {
@@ -91,9 +91,9 @@ impl<S: Simd> Turned<S> {
     }
 }
 
-impl<S: Simd> Course<S> for Turned<S> {
+impl<S: Simd> ObstacleFrame<S> for RotatedFrame<S> {
     #[inline(always)]
-    fn new(simd: S, passage: &Passage) -> Self {
+    fn new(simd: S, passage: &ObstacleSweep) -> Self {
         Self::at(simd, &passage.end)
     }
 
@@ -119,13 +119,13 @@ impl<S: Simd> Course<S> for Turned<S> {
     }
 }
 
-impl<S: Simd> Course<S> for Moving<S> {
+impl<S: Simd> ObstacleFrame<S> for MovingFrame<S> {
     #[inline(always)]
-    fn new(simd: S, passage: &Passage) -> Self {
-        let Passage { start, end, .. } = passage;
+    fn new(simd: S, passage: &ObstacleSweep) -> Self {
+        let ObstacleSweep { start, end, .. } = passage;
         let turn = Mat3A::from_quat(end.rotation) - Mat3A::from_quat(start.rotation);
-        let between = Turned::of(simd, &turn, end.translation - start.translation);
-        Self { start: Turned::at(simd, start), end: Turned::at(simd, end), between }
+        let between = RotatedFrame::of(simd, &turn, end.translation - start.translation);
+        Self { start: RotatedFrame::at(simd, start), end: RotatedFrame::at(simd, end), between }
     }
 
     #[inline(always)]

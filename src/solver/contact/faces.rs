@@ -12,10 +12,10 @@ use fearless_simd::{f32x8, prelude::*};
 use super::{
     Bodies, MeshShape,
     mesh::TriangleMesh,
-    project::Sight,
-    solid::Seen,
-    surface::Places,
-    sweep::{Correction, Passage},
+    project::DistanceQuery,
+    solid::SignedDistance,
+    surface::BvhBounds,
+    sweep::{Correction, ObstacleSweep},
 };
 use crate::solver::{
     StepContext,
@@ -28,7 +28,7 @@ mod nearest;
 mod planes;
 mod way;
 
-use look::{Clear, Sought};
+use look::{EmptyBall, CacheKey};
 use planes::Plane;
 
 /// Distance that cloth keeps from triangles at least, m. Nearer, rounding decides which side it is on.
@@ -36,22 +36,22 @@ pub(super) const LEAST: f32 = 0.0002;
 
 /// The faces of one mesh that the particles of a cloth may meet.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Faces {
+pub(in crate::solver) struct MeshContacts {
     /// The mesh that the blocks know.
     mesh: Weak<TriangleMesh>,
-    blocks: Vec<Known>,
+    blocks: Vec<BlockCache>,
     /// Where the points of a mesh that moves within its frame are when the substep begins, and when it ends, m.
     then: Vec<Vec3A>,
     now: Vec<Vec3A>,
     /// Boxes around the ways of its triangles in the step.
-    places: Places,
+    places: BvhBounds,
     /// Whether the step has met the mesh.
     is_begun: bool,
 }
 
 /// What one block knows.
 #[derive(Clone, Debug, Default)]
-struct Known {
+struct BlockCache {
     /// Where the particles were at the moment `span.start` of the step, m, and how far they go within a step if nothing stops
     /// them.
     start: Block,
@@ -61,7 +61,7 @@ struct Known {
     /// By how much particles may come off their ways, m.
     slack: f32,
     /// What it has looked for last, on this mesh.
-    sought: Option<Sought>,
+    sought: Option<CacheKey>,
     /// The faces that each of its particles may meet, and how far they are from the middle of its way, m.
     found: [Vec<(f32, u32)>; LANES],
     /// Faces of all particles; where one has fewer than another, the first of them again.
@@ -77,7 +77,7 @@ struct Known {
     /// 1, or -1 where the faces form a hollow.
     side: Lane,
     /// Where each particle has last been seen far from all faces.
-    clear: [Clear; LANES],
+    clear: [EmptyBall; LANES],
     /// By how much farther a particle is taken to be, m: those that have no faces are far from all.
     beyond: Lane,
 }
@@ -91,21 +91,21 @@ fn set_lane([x, y, z]: &mut Block, i: usize, value: Vec3A) {
     (x[i], y[i], z[i]) = value.into();
 }
 
-impl Faces {
+impl MeshContacts {
     /// Begins a step: nothing is known yet.
     pub fn begin(&mut self) {
         self.is_begun = false;
     }
 
     fn begin_at(&mut self, MeshShape { mesh, deformed }: &MeshShape, block_count: usize) {
-        self.blocks.resize_with(block_count, Known::default);
+        self.blocks.resize_with(block_count, BlockCache::default);
         // What is clear of a mesh stays so, as long as the mesh stays the same.
         let met = Arc::downgrade(mesh);
         let is_same = deformed.is_none() && self.mesh.ptr_eq(&met);
         for known in &mut self.blocks {
             known.span = 0.0..0.0;
             if !is_same {
-                known.clear = [Clear::default(); LANES];
+                known.clear = [EmptyBall::default(); LANES];
                 known.sought = None;
             }
         }
@@ -118,10 +118,10 @@ impl Faces {
         shape: &'a MeshShape,
         ctx: &StepContext,
         (bodies, obstacle): (&Bodies, usize),
-        passage: &Passage,
+        passage: &ObstacleSweep,
         span: Range<f32>,
         block_count: usize,
-    ) -> FacesInSight<'a> {
+    ) -> MeshDistanceQuery<'a> {
         let MeshShape { mesh, deformed } = shape;
         let is_new = !core::mem::replace(&mut self.is_begun, true);
         if is_new {
@@ -143,7 +143,7 @@ impl Faces {
         };
         let dt = ctx.dt.min(crate::solver::MAX_TIME_STEP);
         let [_, end] = bodies.poses_ahead(ctx, obstacle, span.start..1.0, dt);
-        FacesInSight {
+        MeshDistanceQuery {
             mesh,
             points,
             is_deformed: deformed.is_some(),
@@ -160,15 +160,15 @@ impl Faces {
 }
 
 /// What the particles of a block see of a mesh.
-pub(super) struct FacesInSight<'a> {
+pub(super) struct MeshDistanceQuery<'a> {
     mesh: &'a TriangleMesh,
     /// When the substep begins, and when it ends.
     points: [&'a [Vec3A]; 2],
     is_deformed: bool,
-    places: &'a Places,
-    blocks: &'a mut [Known],
+    places: &'a BvhBounds,
+    blocks: &'a mut [BlockCache],
     block: usize,
-    passage: Passage,
+    passage: ObstacleSweep,
     /// m/s²
     gravity: Vec3A,
     /// Pose of the mesh at the end of the step.
@@ -178,8 +178,8 @@ pub(super) struct FacesInSight<'a> {
     dt: f32,
 }
 
-impl FacesInSight<'_> {
-    fn known(&self) -> &Known {
+impl MeshDistanceQuery<'_> {
+    fn known(&self) -> &BlockCache {
         &self.blocks[self.block]
     }
 
@@ -212,7 +212,7 @@ impl FacesInSight<'_> {
     }
 }
 
-impl Sight for FacesInSight<'_> {
+impl DistanceQuery for MeshDistanceQuery<'_> {
     fn passes(&self) -> u32 {
         self.known().passes
     }
@@ -220,7 +220,7 @@ impl Sight for FacesInSight<'_> {
     #[inline(always)]
     fn turn_to<S: Simd>(&mut self, simd: S, block: usize, run: &Run, local: Vec3x8<S>) -> bool {
         self.block = block;
-        let Known { start, way, span, slack, .. } = self.known();
+        let BlockCache { start, way, span, slack, .. } = self.known();
         let since = f32x8::splat(simd, self.span.end - span.start);
         let off = local - Vec3x8::load(simd, start) - Vec3x8::load(simd, way) * since;
         let is_free = lane(simd, &run.inverse_mass[block]).simd_gt(0.0);
@@ -234,32 +234,32 @@ impl Sight for FacesInSight<'_> {
     }
 
     #[inline(always)]
-    fn seen<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Seen<f32x8<S>> {
+    fn sample<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> SignedDistance<f32x8<S>> {
         let (known, is_closed) = (self.known(), self.mesh.is_closed);
         if known.planes.is_empty() {
-            nearest::nearest(simd, local, &known.now, known, is_closed).seen
+            nearest::nearest(simd, local, &known.now, known, is_closed).sample
         } else {
             planes::highest(simd, local, known, is_closed)
         }
     }
 
     #[inline(always)]
-    fn seen_before<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> Seen<f32x8<S>> {
+    fn seen_before<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> SignedDistance<f32x8<S>> {
         if !self.is_deformed {
-            return self.seen(simd, local);
+            return self.sample(simd, local);
         }
         let known = self.known();
-        nearest::nearest(simd, local, &known.then, known, self.mesh.is_closed).seen
+        nearest::nearest(simd, local, &known.then, known, self.mesh.is_closed).sample
     }
 
     #[inline(always)]
-    fn keep_side<S: Simd>(&self, simd: S, before: Seen<f32x8<S>>, after: Seen<f32x8<S>>) -> Seen<f32x8<S>> {
+    fn keep_side<S: Simd>(&self, simd: S, before: SignedDistance<f32x8<S>>, after: SignedDistance<f32x8<S>>) -> SignedDistance<f32x8<S>> {
         // Near planes, nothing goes by without going through. Of what is closed, they know the side themselves.
         if self.known().planes.is_empty() {
             return after;
         }
         let side = f32x8::splat(simd, 1.0).copysign(before.normal.dot(after.normal));
-        Seen { distance: after.distance * side, normal: after.normal * side }
+        SignedDistance { distance: after.distance * side, normal: after.normal * side }
     }
 
     #[inline(always)]
@@ -271,7 +271,7 @@ impl Sight for FacesInSight<'_> {
         nearest::nearest(simd, local, &known.now, known, self.mesh.is_closed).way_from(simd, &known.then, &known.now)
     }
 
-    fn correction(&self, i: usize, passage: &Passage, position: Vec3A, previous: Vec3A) -> Option<Correction> {
+    fn correction(&self, i: usize, passage: &ObstacleSweep, position: Vec3A, previous: Vec3A) -> Option<Correction> {
         way::correction(self, i, passage, position, previous)
     }
 }

@@ -4,12 +4,12 @@ use bevy::math::Vec3A;
 
 use super::{
     closest,
-    surface::{Bounds, Places, Surface},
+    surface::{Bounds, BvhBounds, TriangleBvh},
     tangle,
 };
 
 /// Whether a place is inside of a closed mesh: a way out of it goes through an odd number of triangles.
-pub fn is_inside(place: Vec3A, surface: &Surface, places: &Places, points: &[Vec3A]) -> bool {
+pub fn is_inside(place: Vec3A, surface: &TriangleBvh, places: &BvhBounds, points: &[Vec3A]) -> bool {
     let whole = places.whole();
     if !whole.meets(&Bounds::around([place])) {
         return false;
@@ -32,8 +32,8 @@ pub fn is_inside(place: Vec3A, surface: &Surface, places: &Places, points: &[Vec
 pub fn nearest(
     place: Vec3A,
     farthest: f32,
-    surface: &Surface,
-    places: &Places,
+    surface: &TriangleBvh,
+    places: &BvhBounds,
     points: &[Vec3A],
 ) -> Option<(usize, f32)> {
     let mut best = None;

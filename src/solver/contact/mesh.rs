@@ -7,7 +7,7 @@ use bevy::{
     platform::collections::HashMap,
 };
 
-use super::surface::{Bounds, Owned, Places, Surface, edges_of};
+use super::surface::{Bounds, Representative, BvhBounds, TriangleBvh, edges_of};
 
 /// Triangles that cloth can't pass, prepared for contact. Built once and shared.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,9 +17,9 @@ pub struct TriangleMesh {
     /// Whether the triangles enclose a volume and all face out of it: cloth is then kept outside. Else they are thin, and
     /// cloth stays on the side that it comes from.
     pub is_closed: bool,
-    pub(super) surface: Surface,
+    pub(super) surface: TriangleBvh,
     /// Boxes around the triangles where the points are.
-    pub(super) places: Places,
+    pub(super) places: BvhBounds,
 }
 
 /// A triangle mesh as an obstacle within one step.
@@ -37,9 +37,9 @@ impl TriangleMesh {
     /// `is_closed` if each edge has two that face the same side, and that is outside.
     pub fn new(points: Vec<Vec3A>, triangles: &[[u32; 3]], is_closed: bool) -> Self {
         let rest: Vec<Vec3> = points.iter().copied().map(Vec3::from).collect();
-        let mut surface = Surface::new(&rest, triangles);
+        let mut surface = TriangleBvh::new(&rest, triangles);
         sharpen(&mut surface, &points, is_closed);
-        let mut places = Places::default();
+        let mut places = BvhBounds::default();
         places.follow(&surface, |triangle| Bounds::around(triangle.map(|i| points[i as usize])), None::<fn(_) -> _>);
         Self { points, is_closed, surface, places }
     }
@@ -58,7 +58,7 @@ impl TriangleMesh {
 
 /// Finds how far each corner and edge stands out, as a share of the distance to what is next to it: the sine of the angle
 /// under which an edge falls off to both sides, and of that under which a corner falls off to all.
-fn sharpen(surface: &mut Surface, points: &[Vec3A], is_closed: bool) {
+fn sharpen(surface: &mut TriangleBvh, points: &[Vec3A], is_closed: bool) {
     let at = |i: u32| points[i as usize];
     let normals: Vec<Vec3A> = surface
         .triangles
@@ -103,10 +103,10 @@ fn sharpen(surface: &mut Surface, points: &[Vec3A], is_closed: bool) {
         let falls_off = beyond.is_some_and(|i| (at(i) - at(a)).dot(normals[one]) < 0.0);
         if falls_off || !is_closed { sine } else { 0.0 }
     };
-    let sharp: Vec<Owned> = surface
+    let sharp: Vec<Representative> = surface
         .triangles
         .iter()
-        .map(|&triangle| Owned {
+        .map(|&triangle| Representative {
             corners: triangle.map(|i| sharp_corner(i as usize)),
             edges: edges_of(triangle).map(sharp_edge),
         })

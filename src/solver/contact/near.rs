@@ -8,11 +8,11 @@ use core::ops::Range;
 use bevy::math::{Isometry3d, Vec3A};
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
-use super::{Bodies, MeshShape, Obstacle, Shape, Stray, project::Stretches, sweep};
+use super::{Bodies, MeshShape, Obstacle, Shape, BodyDisplacement, project::CandidateRanges, sweep};
 use crate::solver::{
     Lanes, Particles, StepContext,
     lanes::{Block, Run},
-    simd::{Instructions, Vec3x8, lane},
+    simd::{SimdLevel, Vec3x8, lane},
 };
 
 /// Blocks in a stretch.
@@ -23,15 +23,15 @@ const GAINED: f32 = 0.01;
 
 /// What is known of the obstacles around a cloth.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Near {
+pub(in crate::solver) struct BroadPhase {
     /// Those that may be touched.
     pub(super) obstacles: Vec<NearObstacle>,
     /// Stretches that may touch them, obstacle after obstacle.
-    reachable: Vec<Reachable>,
+    reachable: Vec<CandidateRange>,
     /// Where the particles were when that was found, m.
     start: Vec<Block>,
     /// Ball around the free ones of each stretch there.
-    balls: Vec<Ball>,
+    balls: Vec<BoundingSphere>,
     /// How far the free ones of each stretch are from there, m.
     moved: Vec<f32>,
     /// How far they may come without touching anything else, m.
@@ -46,7 +46,7 @@ pub(super) struct NearObstacle {
     /// Where it was when the particles were at their start.
     pose: Isometry3d,
     /// How far it had come off its path by then.
-    stray: Stray,
+    stray: BodyDisplacement,
     /// The farthest from its origin that anything happens, m.
     far: f32,
     /// Its stretches.
@@ -55,7 +55,7 @@ pub(super) struct NearObstacle {
 
 /// A stretch that may touch an obstacle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reachable {
+pub(super) struct CandidateRange {
     pub stretch: usize,
     /// Distance between the two at least, m, that they came nearer than which they would touch.
     pub clearance: f32,
@@ -63,13 +63,13 @@ pub(super) struct Reachable {
 
 /// A ball around points.
 #[derive(Clone, Copy, Debug)]
-struct Ball {
+struct BoundingSphere {
     centre: Vec3A,
     /// Radius, m; negative around nothing.
     radius: f32,
 }
 
-impl Ball {
+impl BoundingSphere {
     /// Around the box between two corners.
     fn around(low: Vec3A, high: Vec3A) -> Self {
         if low.cmple(high).all() {
@@ -86,11 +86,11 @@ pub(in crate::solver) fn near_obstacles<'a>(
     ctx: &StepContext<'a>,
     dt: f32,
 ) -> impl Iterator<Item = &'a Obstacle> + Clone {
-    let ends = ctx.anchors.iter().map(|anchor| anchor.end).chain(ctx.grabs.iter().map(|grab| grab.end));
+    let ends = ctx.pin_motions.iter().map(|anchor| anchor.end).chain(ctx.grabs.iter().map(|grab| grab.end));
     let places = particles.position.iter().copied().chain(ends).filter(|_| !ctx.obstacles.is_empty());
     let (low, high) = places.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let fastest = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
-    let cloth = Ball::around(low, high);
+    let cloth = BoundingSphere::around(low, high);
     // A step ahead, and once more for what it gains in speed.
     let reach = ctx.contact_distance() + 2.0 * fastest * dt + GAINED;
     ctx.obstacles.iter().filter(move |obstacle| {
@@ -144,7 +144,7 @@ impl Shape {
     }
 }
 
-impl Near {
+impl BroadPhase {
     /// Begins a step: nothing is known yet.
     pub fn begin(&mut self) {
         self.known = f32::NEG_INFINITY;
@@ -157,21 +157,21 @@ impl Near {
         ctx: &StepContext,
         span: Range<f32>,
         bodies: &Bodies,
-        instructions: Instructions,
+        simd_level: SimdLevel,
     ) {
         let stretches = lanes.inverse_mass.len().div_ceil(STRETCH);
         self.moved.resize(stretches, 0.0);
         let run = lanes.whole();
         if self.known >= 0.0 {
-            self.measure(&run, instructions);
+            self.measure(&run, simd_level);
             if self.farthest(bodies) <= self.known {
                 return;
             }
         }
         self.start.clear();
         self.start.extend_from_slice(run.previous);
-        self.measure(&run, instructions);
-        self.find(&run, ctx, span, bodies, instructions);
+        self.measure(&run, simd_level);
+        self.find(&run, ctx, span, bodies, simd_level);
     }
 
     /// How far any particle has come, and any obstacle off its path, m.
@@ -183,21 +183,21 @@ impl Near {
         self.moved.iter().copied().chain(of_obstacles).fold(0.0, f32::max)
     }
 
-    fn measure(&mut self, run: &Run, instructions: Instructions) {
+    fn measure(&mut self, run: &Run, simd_level: SimdLevel) {
         let Self { moved, start, .. } = self;
-        dispatch!(instructions.level(), simd => measure(simd, moved, start, run));
+        dispatch!(simd_level.level(), simd => measure(simd, moved, start, run));
     }
 
     /// Finds the obstacles and stretches that may touch each other in what is left of the step, from `span` on.
-    fn find(&mut self, run: &Run, ctx: &StepContext, span: Range<f32>, bodies: &Bodies, instructions: Instructions) {
+    fn find(&mut self, run: &Run, ctx: &StepContext, span: Range<f32>, bodies: &Bodies, simd_level: SimdLevel) {
         let Self { obstacles, reachable, start, balls, moved, .. } = self;
-        balls.resize(moved.len(), Ball { centre: Vec3A::ZERO, radius: 0.0 });
-        dispatch!(instructions.level(), simd => enclose(simd, balls, start, run));
+        balls.resize(moved.len(), BoundingSphere { centre: Vec3A::ZERO, radius: 0.0 });
+        dispatch!(simd_level.level(), simd => enclose(simd, balls, start, run));
         let some = balls.iter().filter(|ball| ball.radius >= 0.0);
         let (low, high) = some.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), ball| {
             (low.min(ball.centre - ball.radius), high.max(ball.centre + ball.radius))
         });
-        let cloth = Ball::around(low, high);
+        let cloth = BoundingSphere::around(low, high);
         let left = (1.0 - span.start) / (span.end - span.start);
         let mut known = 2.0 * moved.iter().copied().fold(0.0, f32::max) * left + GAINED;
         let ways = ctx.obstacles.iter().map(|o| o.start.translation.distance(o.end.translation));
@@ -215,7 +215,7 @@ impl Near {
             // A ball around it holds it however it turns.
             let shift = path.translation.distance(it.end.translation) + off;
             let radius = it.shape.reach() + distance + shift;
-            let gap = |ball: &Ball| pose.translation.distance(ball.centre) - ball.radius - radius;
+            let gap = |ball: &BoundingSphere| pose.translation.distance(ball.centre) - ball.radius - radius;
             if gap(&cloth) > known {
                 continue;
             }
@@ -230,7 +230,7 @@ impl Near {
                 }
                 let clearance = it.shape.distance(to_local.transform_point(ball.centre)) - ball.radius - distance;
                 if clearance - way <= known {
-                    reachable.push(Reachable { stretch, clearance });
+                    reachable.push(CandidateRange { stretch, clearance });
                 }
             }
             if reachable.len() > first {
@@ -241,9 +241,9 @@ impl Near {
     }
 
     /// The stretches that an obstacle may touch.
-    pub(super) fn stretches(&mut self, number: usize) -> Stretches<'_> {
+    pub(super) fn stretches(&mut self, number: usize) -> CandidateRanges<'_> {
         let NearObstacle { far, reachable, pose, .. } = &self.obstacles[number];
-        Stretches {
+        CandidateRanges {
             reachable: &self.reachable[reachable.clone()],
             moved: &mut self.moved,
             start: &self.start,
@@ -269,7 +269,7 @@ fn measure<S: Simd>(simd: S, moved: &mut [f32], start: &[Block], run: &Run) {
 }
 
 #[inline(always)]
-fn enclose<S: Simd>(simd: S, balls: &mut [Ball], start: &[Block], run: &Run) {
+fn enclose<S: Simd>(simd: S, balls: &mut [BoundingSphere], start: &[Block], run: &Run) {
     let zero = f32x8::splat(simd, 0.0);
     let (least, most) = (Vec3x8::splat(simd, [f32::INFINITY; 3]), Vec3x8::splat(simd, [f32::NEG_INFINITY; 3]));
     for (ball, (start, inverse_mass)) in
@@ -285,6 +285,6 @@ fn enclose<S: Simd>(simd: S, balls: &mut [Ball], start: &[Block], run: &Run) {
         }
         let low = Vec3A::new(low.x.reduce_min(), low.y.reduce_min(), low.z.reduce_min());
         let high = Vec3A::new(high.x.reduce_max(), high.y.reduce_max(), high.z.reduce_max());
-        *ball = Ball::around(low, high);
+        *ball = BoundingSphere::around(low, high);
     }
 }

@@ -20,7 +20,7 @@ pub(in crate::solver) trait Number:
     + Mul<f32, Output = Self>
 {
     /// What a comparison of each gives.
-    type Truth: Copy + BitAnd<Output = Self::Truth> + Not<Output = Self::Truth>;
+    type Mask: Copy + BitAnd<Output = Self::Mask> + Not<Output = Self::Mask>;
 
     /// `value` in each place.
     fn like(self, value: f32) -> Self;
@@ -28,15 +28,15 @@ pub(in crate::solver) trait Number:
     fn size(self) -> Self;
     fn at_least(self, other: Self) -> Self;
     fn at_most(self, other: Self) -> Self;
-    fn is_below(self, other: Self) -> Self::Truth;
+    fn is_below(self, other: Self) -> Self::Mask;
     /// `self` where that is so, else `other`.
-    fn if_so(self, so: Self::Truth, other: Self) -> Self;
+    fn if_so(self, so: Self::Mask, other: Self) -> Self;
     /// Whether it is so of any of them.
-    fn is_any(so: Self::Truth) -> bool;
+    fn is_any(so: Self::Mask) -> bool;
 }
 
 impl Number for f32 {
-    type Truth = bool;
+    type Mask = bool;
 
     #[inline(always)]
     fn like(self, value: f32) -> Self {
@@ -80,7 +80,7 @@ impl Number for f32 {
 }
 
 impl<S: Simd> Number for f32x8<S> {
-    type Truth = mask32x8<S>;
+    type Mask = mask32x8<S>;
 
     #[inline(always)]
     fn like(self, value: f32) -> Self {
@@ -126,7 +126,7 @@ impl<S: Simd> Number for f32x8<S> {
 impl<N: Number> Vec3Wide<N> {
     /// `self` where that is so, else `other`.
     #[inline(always)]
-    pub fn if_so(self, so: N::Truth, other: Self) -> Self {
+    pub fn if_so(self, so: N::Mask, other: Self) -> Self {
         Self { x: self.x.if_so(so, other.x), y: self.y.if_so(so, other.y), z: self.z.if_so(so, other.z) }
     }
 }

@@ -8,30 +8,30 @@ use bevy::math::{
 
 use super::{
     solid::{Solid, TaperedCapsule},
-    surface::{Bounds, Places, Surface},
+    surface::{Bounds, BvhBounds, TriangleBvh},
 };
 
 mod ellipsoid;
 
 /// Points and edges with a distance around them.
 #[derive(Clone, Debug, Default)]
-pub struct Outline {
+pub struct SharpFeatures {
     pub points: Vec<Vec3A>,
     /// Distance around each point, m.
     pub radii: Vec<f32>,
     /// The edges, as triangles without an area.
-    pub surface: Surface,
+    pub surface: TriangleBvh,
     /// Boxes around them, as thick as they are.
-    pub places: Places,
+    pub places: BvhBounds,
 }
 
 /// Corners of the polygon that stands for a rim. It lies within the rim by 0.5 % of its radius.
 const RIM: u32 = 32;
 
-impl Outline {
+impl SharpFeatures {
     /// Follows `solid`, as `tightness` asks for.
-    pub fn of(solid: &Solid, tightness: Tightness) -> Self {
-        let mut outline = Drawing::default();
+    pub fn of(solid: &Solid, tightness: FeatureTolerance) -> Self {
+        let mut outline = OutlineBuilder::default();
         if tightness.pierced_by(solid).is_none() {
             return outline.finish();
         }
@@ -67,7 +67,7 @@ impl Outline {
 
 /// How tightly a cloth lies on what it lies on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tightness {
+pub struct FeatureTolerance {
     /// Its longest edge, as stretched as it counts, m.
     pub edge: f32,
     /// Distance that it keeps, m.
@@ -78,16 +78,16 @@ pub struct Tightness {
 
 /// What comes between the particles of a cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Sharp {
+pub enum Sharpness {
     /// An edge, or what is so round that a triangle's inside sinks into it.
     Edge,
     /// What fits through a stretched cell, or ends in that.
     Tip,
 }
 
-impl Tightness {
+impl FeatureTolerance {
     /// What of a solid comes between particles.
-    pub fn pierced_by(self, solid: &Solid) -> Option<Sharp> {
+    pub fn pierced_by(self, solid: &Solid) -> Option<Sharpness> {
         // The sine of half a right angle is that by which edges fall off to both sides.
         let is_caught = core::f32::consts::FRAC_1_SQRT_2 * self.edge / 2.0 > self.sink;
         match *solid {
@@ -97,19 +97,19 @@ impl Tightness {
             }
             Solid::Ellipsoid(ellipsoid) => {
                 let [sharp, blunt] = ellipsoid.tip_radii();
-                self.is_thin(sharp).then_some(if self.fits(blunt) { Sharp::Tip } else { Sharp::Edge })
+                self.is_thin(sharp).then_some(if self.fits(blunt) { Sharpness::Tip } else { Sharpness::Edge })
             }
             Solid::Cylinder(Cylinder { radius, .. }) => {
-                self.pierced_by_ball(radius).or(is_caught.then_some(Sharp::Edge))
+                self.pierced_by_ball(radius).or(is_caught.then_some(Sharpness::Edge))
             }
-            Solid::Cuboid(_) => is_caught.then_some(Sharp::Edge),
-            Solid::Cone(_) => is_caught.then_some(Sharp::Tip),
+            Solid::Cuboid(_) => is_caught.then_some(Sharpness::Edge),
+            Solid::Cone(_) => is_caught.then_some(Sharpness::Tip),
             Solid::HalfSpace(_) => None,
         }
     }
 
-    fn pierced_by_ball(self, radius: f32) -> Option<Sharp> {
-        self.is_thin(radius).then_some(if self.fits(radius) { Sharp::Tip } else { Sharp::Edge })
+    fn pierced_by_ball(self, radius: f32) -> Option<Sharpness> {
+        self.is_thin(radius).then_some(if self.fits(radius) { Sharpness::Tip } else { Sharpness::Edge })
     }
 
     /// Whether what is as round as that fits through a cell of the cloth.
@@ -127,13 +127,13 @@ impl Tightness {
 
 /// An outline as it is drawn.
 #[derive(Default)]
-struct Drawing {
+struct OutlineBuilder {
     points: Vec<Vec3A>,
     radii: Vec<f32>,
     edges: Vec<[u32; 3]>,
 }
 
-impl Drawing {
+impl OutlineBuilder {
     fn point(&mut self, place: Vec3A, radius: f32) -> u32 {
         self.points.push(place);
         self.radii.push(radius);
@@ -168,18 +168,18 @@ impl Drawing {
         }
     }
 
-    fn finish(self) -> Outline {
+    fn finish(self) -> SharpFeatures {
         let Self { points, radii, edges } = self;
         if points.is_empty() {
-            return Outline::default();
+            return SharpFeatures::default();
         }
         let rest: Vec<Vec3> = points.iter().copied().map(Vec3::from).collect();
-        let surface = Surface::new(&rest, &edges);
-        let mut places = Places::default();
+        let surface = TriangleBvh::new(&rest, &edges);
+        let mut places = BvhBounds::default();
         let ball = |i: u32| Bounds::around([points[i as usize]]).grown(radii[i as usize]);
         let around = |[a, b, _]: [u32; 3]| ball(a).union(ball(b));
         places.follow(&surface, around, None::<fn(_) -> _>);
-        Outline { points, radii, surface, places }
+        SharpFeatures { points, radii, surface, places }
     }
 }
 
@@ -202,7 +202,7 @@ mod tests {
             Solid::Cone(Cone::new(0.1, 0.4)),
         ];
         for solid in solids {
-            let outline = Outline::of(&solid, Tightness { edge: 0.1, distance: 0.001, sink: 0.0005 });
+            let outline = SharpFeatures::of(&solid, FeatureTolerance { edge: 0.1, distance: 0.001, sink: 0.0005 });
             assert!(!outline.points.is_empty(), "{solid:?}");
             for (&point, radius) in outline.points.iter().zip(&outline.radii) {
                 assert!(solid.surface(point).distance < 1e-5 - radius, "{solid:?}: {point}");
@@ -212,9 +212,9 @@ mod tests {
 
     #[test]
     fn what_is_round_enough_has_none() {
-        let tightness = Tightness { edge: 0.022, distance: 0.0, sink: 0.0005 };
-        assert!(Outline::of(&Solid::Sphere(Sphere::new(0.3)), tightness).points.is_empty());
+        let tightness = FeatureTolerance { edge: 0.022, distance: 0.0, sink: 0.0005 };
+        assert!(SharpFeatures::of(&Solid::Sphere(Sphere::new(0.3)), tightness).points.is_empty());
         let half_size = Vec3::new(0.4, 0.35, 0.3);
-        assert!(Outline::of(&Solid::Ellipsoid(Ellipsoid { half_size }), tightness).points.is_empty());
+        assert!(SharpFeatures::of(&Solid::Ellipsoid(Ellipsoid { half_size }), tightness).points.is_empty());
     }
 }

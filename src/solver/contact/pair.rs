@@ -13,11 +13,11 @@
 
 use bevy::math::Vec3A;
 
-use super::{body::Moved, closest};
+use super::{body::MovedBody, closest};
 
 /// Points that features are made of: particles of all cloths that may touch, then those of obstacles.
 #[derive(Clone, Debug, Default)]
-pub struct Points {
+pub struct FeaturePoints {
     /// Where they are, m.
     pub position: Vec<Vec3A>,
     /// Where they were when the substep began, m.
@@ -41,7 +41,7 @@ pub enum Features {
 
 /// Two features that may touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair {
+pub struct FeatureContact {
     pub features: Features,
     /// Number of each point.
     pub points: [u32; 4],
@@ -59,7 +59,7 @@ pub struct Pair {
 
 /// How two features are to each other.
 #[derive(Clone, Copy, Debug)]
-pub struct Nearest {
+pub struct ClosestPoints {
     /// Weight of each point in the way from the second feature's closest point to the first's.
     pub weights: [f32; 4],
     /// That way, m.
@@ -69,7 +69,7 @@ pub struct Nearest {
 impl Features {
     /// The closest points of two features.
     #[inline]
-    pub fn nearest(self, [a, b, c, d]: [Vec3A; 4]) -> Nearest {
+    pub fn nearest(self, [a, b, c, d]: [Vec3A; 4]) -> ClosestPoints {
         let weights = match self {
             Self::PointFace => {
                 let on = closest::on_triangle(a, [b, c, d]);
@@ -81,7 +81,7 @@ impl Features {
             }
             Self::PointPoint => [1.0, -1.0, 0.0, 0.0],
         };
-        Nearest { weights, between: weighted(weights, [a, b, c, d]) }
+        ClosestPoints { weights, between: weighted(weights, [a, b, c, d]) }
     }
 
     /// Whether all of the first feature is farther than `distance` from all of the second along `normal`.
@@ -104,15 +104,15 @@ pub fn weighted(weights: [f32; 4], [a, b, c, d]: [Vec3A; 4]) -> Vec3A {
 
 /// The body that one of two features is of.
 #[derive(Clone, Copy, Debug)]
-pub struct OnBody<'a> {
-    pub body: &'a Moved,
+pub struct BodyContact<'a> {
+    pub body: &'a MovedBody,
     /// From the origin of the points, m.
     pub centre: Vec3A,
     /// Whether it has the first feature.
     pub is_first: bool,
 }
 
-impl OnBody<'_> {
+impl BodyContact<'_> {
     /// Where the cloth is touched, from the body's centre of mass, m.
     fn beside(&self, weights: [f32; 4], places: [Vec3A; 4]) -> Vec3A {
         let of_cloth = if self.is_first { -1.0 } else { 1.0 };
@@ -122,7 +122,7 @@ impl OnBody<'_> {
 
 /// What a body gets within a substep of h seconds, times h.
 #[derive(Clone, Copy, Debug)]
-pub struct Given {
+pub struct Impulse {
     /// kg m
     pub linear: Vec3A,
     /// About its centre of mass, kg m².
@@ -147,7 +147,7 @@ pub fn give<const N: usize>(weights: [f32; N], masses: [f32; N]) -> f32 {
 
 /// How two features part.
 #[derive(Clone, Copy, Debug)]
-pub struct Parting {
+pub struct Response {
     pub points: [usize; 4],
     /// Weight of each point in the way from the second feature's closest point to the first's.
     pub weights: [f32; 4],
@@ -161,11 +161,11 @@ pub struct Parting {
     pub friction: f32,
 }
 
-impl Parting {
+impl Response {
     /// Moves the points by their weights and inverse masses, with friction against their slide. Returns what the obstacle among
     /// them got if it is a body; nothing where nothing can be moved.
     #[inline]
-    pub fn happen(&self, points: &mut Points, body: Option<&OnBody>) -> Option<Given> {
+    pub fn happen(&self, points: &mut FeaturePoints, body: Option<&BodyContact>) -> Option<Impulse> {
         let Self { points: all, weights, normal, gained, parted, friction } = *self;
         let places = all.map(|i| points.position[i]);
         let before = all.map(|i| points.previous[i]);
@@ -194,15 +194,15 @@ impl Parting {
         }
         points.has_parted |= part != Vec3A::ZERO;
         let linear = if body.is_some_and(|on| on.is_first) { change } else { -change };
-        Some(Given { linear, angular: beside.map_or(Vec3A::ZERO, |beside| beside.cross(linear)) })
+        Some(Impulse { linear, angular: beside.map_or(Vec3A::ZERO, |beside| beside.cross(linear)) })
     }
 }
 
-impl Pair {
+impl FeatureContact {
     /// Brings the features as far apart as they should be, with friction. Those that were nearer before part by no more than
     /// `most_parted` (m). Where they touched, returns what the obstacle among them got, if it is a body.
     #[inline]
-    pub fn solve(&mut self, points: &mut Points, most_parted: f32, body: Option<&OnBody>) -> Option<Given> {
+    pub fn solve(&mut self, points: &mut FeaturePoints, most_parted: f32, body: Option<&BodyContact>) -> Option<Impulse> {
         let all = self.points.map(|i| i as usize);
         let places = all.map(|i| points.position[i]);
         let farthest = self.distance + self.taper.max(0.0);
@@ -211,7 +211,7 @@ impl Pair {
             return None;
         }
         let before = all.map(|i| points.previous[i]);
-        let Nearest { weights, between } = self.features.nearest(places);
+        let ClosestPoints { weights, between } = self.features.nearest(places);
         let (direction, length) = between.normalize_and_length();
         let (mut normal, mut gap) = if length > 0.0 { (direction, length) } else { (self.normal, 0.0) };
         if normal.dot(self.normal) < 0.0 && (self.gap < 0.0 || self.has_passed(before, places)) {
@@ -231,7 +231,7 @@ impl Pair {
         // What was too near before parts without gaining speed.
         let gained = (old_gap.min(target) - gap).max(0.0);
         let parting =
-            Parting { points: all, weights, normal, gained, parted: target - gap - gained, friction: self.friction };
+            Response { points: all, weights, normal, gained, parted: target - gap - gained, friction: self.friction };
         let given = parting.happen(points, body)?;
         self.gap = target;
         Some(given)
@@ -254,7 +254,7 @@ impl Pair {
             return false;
         }
         let met = core::array::from_fn(|i| before[i].lerp(after[i], share));
-        let Nearest { between, .. } = self.features.nearest(met);
+        let ClosestPoints { between, .. } = self.features.nearest(met);
         between.length() <= self.distance.max(1e-4)
     }
 }

@@ -7,38 +7,38 @@ use fearless_simd::{dispatch, f32x8, mask32x8, prelude::*};
 
 use super::{
     Bodies, Shape, Solid,
-    course::{Course, Moving, Shifted, Turned},
+    course::{ObstacleFrame, MovingFrame, TranslatedFrame, RotatedFrame},
     faces,
-    near::{Reachable, STRETCH},
-    sweep::{self, Passage},
+    near::{CandidateRange, STRETCH},
+    sweep::{self, ObstacleSweep},
 };
 use crate::solver::{
     Scratch, StepContext,
     lanes::{Block, Run},
-    simd::{Instructions, Vec3x8, lane},
+    simd::{SimdLevel, Vec3x8, lane},
 };
 
 mod push;
 mod sight;
 
-use push::{Hold, Movable, Still};
-pub(super) use sight::Sight;
-use sight::Whole;
+use push::{Response, Dynamic, Kinematic};
+pub(super) use sight::DistanceQuery;
+use sight::UniformField;
 
 /// Projects all free particles out of all obstacles within the part `span` (0..=1) of the step, a substep of `h` seconds.
 /// Returns the number of contacts.
 pub(in crate::solver) fn project(scratch: &mut Scratch, ctx: &StepContext, span: Range<f32>, h: f32) -> u32 {
-    let Scratch { lanes, near, faces: known, bodies, instructions, .. } = scratch;
-    near.follow(lanes, ctx, span.clone(), bodies, *instructions);
+    let Scratch { lanes, near, faces: known, bodies, simd_level, .. } = scratch;
+    near.follow(lanes, ctx, span.clone(), bodies, *simd_level);
     let mut run = lanes.whole();
     let mut contacts = 0;
     for number in 0..near.obstacles.len() {
         let obstacle = near.obstacles[number].obstacle;
         let it = &ctx.obstacles[obstacle];
         let poses @ [start, end] = bodies.poses(ctx, obstacle, span.clone());
-        let passage = Passage::new(it, poses, ctx, h);
+        let passage = ObstacleSweep::new(it, poses, ctx, h);
         let stretches = near.stretches(number);
-        let mut past = Past { passage, obstacle, bodies, run: &mut run, stretches, instructions: *instructions };
+        let mut past = ParticleProjector { passage, obstacle, bodies, run: &mut run, stretches, simd_level: *simd_level };
         contacts += match &it.shape {
             Shape::Solid(solid) => {
                 let mut solid = *solid;
@@ -46,14 +46,14 @@ pub(in crate::solver) fn project(scratch: &mut Scratch, ctx: &StepContext, span:
                     (past.passage, solid) = passage.unturned(solid);
                 }
                 match solid {
-                    Solid::Sphere(field) => past.go(&mut Whole(field)),
-                    Solid::Ellipsoid(field) => past.go(&mut Whole(field)),
-                    Solid::Cuboid(field) => past.go(&mut Whole(field)),
-                    Solid::Capsule(field) => past.go(&mut Whole(field)),
-                    Solid::TaperedCapsule(field) => past.go(&mut Whole(field)),
-                    Solid::Cylinder(field) => past.go(&mut Whole(field)),
-                    Solid::Cone(field) => past.go(&mut Whole(field)),
-                    Solid::HalfSpace(field) => past.go(&mut Whole(field)),
+                    Solid::Sphere(field) => past.go(&mut UniformField(field)),
+                    Solid::Ellipsoid(field) => past.go(&mut UniformField(field)),
+                    Solid::Cuboid(field) => past.go(&mut UniformField(field)),
+                    Solid::Capsule(field) => past.go(&mut UniformField(field)),
+                    Solid::TaperedCapsule(field) => past.go(&mut UniformField(field)),
+                    Solid::Cylinder(field) => past.go(&mut UniformField(field)),
+                    Solid::Cone(field) => past.go(&mut UniformField(field)),
+                    Solid::HalfSpace(field) => past.go(&mut UniformField(field)),
                 }
             }
             Shape::Mesh(mesh) => {
@@ -69,8 +69,8 @@ pub(in crate::solver) fn project(scratch: &mut Scratch, ctx: &StepContext, span:
 }
 
 /// Parts of a cloth that may come past an obstacle.
-pub(super) struct Stretches<'a> {
-    pub reachable: &'a [Reachable],
+pub(super) struct CandidateRanges<'a> {
+    pub reachable: &'a [CandidateRange],
     /// How far each stretch has come off where it was, m.
     pub moved: &'a mut [f32],
     /// Where that was, m.
@@ -82,18 +82,18 @@ pub(super) struct Stretches<'a> {
 }
 
 /// A cloth on its way past an obstacle.
-struct Past<'a, 'b> {
-    passage: Passage,
+struct ParticleProjector<'a, 'b> {
+    passage: ObstacleSweep,
     /// Number of the obstacle.
     obstacle: usize,
     bodies: &'a mut Bodies,
     run: &'a mut Run<'b>,
-    stretches: Stretches<'a>,
-    instructions: Instructions,
+    stretches: CandidateRanges<'a>,
+    simd_level: SimdLevel,
 }
 
 /// What touches a surface in a block.
-struct Touching<S: Simd> {
+struct Contacts8<S: Simd> {
     place: Vec3x8<S>,
     before: Vec3x8<S>,
     inverse_mass: f32x8<S>,
@@ -113,22 +113,22 @@ struct Touching<S: Simd> {
     swept: u64,
 }
 
-impl Past<'_, '_> {
-    fn go(&mut self, sight: &mut impl Sight) -> u32 {
-        let level = self.instructions.level();
+impl ParticleProjector<'_, '_> {
+    fn go(&mut self, sight: &mut impl DistanceQuery) -> u32 {
+        let level = self.simd_level.level();
         if self.bodies.get(self.obstacle).is_some() {
-            dispatch!(level, simd => self.pass::<_, Moving<_>, Movable, _>(simd, sight))
+            dispatch!(level, simd => self.pass::<_, MovingFrame<_>, Dynamic, _>(simd, sight))
         } else if self.passage.moves() {
-            dispatch!(level, simd => self.pass::<_, Moving<_>, Still, _>(simd, sight))
+            dispatch!(level, simd => self.pass::<_, MovingFrame<_>, Kinematic, _>(simd, sight))
         } else if self.passage.end.rotation == Quat::IDENTITY {
-            dispatch!(level, simd => self.pass::<_, Shifted<_>, Still, _>(simd, sight))
+            dispatch!(level, simd => self.pass::<_, TranslatedFrame<_>, Kinematic, _>(simd, sight))
         } else {
-            dispatch!(level, simd => self.pass::<_, Turned<_>, Still, _>(simd, sight))
+            dispatch!(level, simd => self.pass::<_, RotatedFrame<_>, Kinematic, _>(simd, sight))
         }
     }
 
     #[inline(always)]
-    fn pass<S: Simd, C: Course<S>, H: Hold, V: Sight>(&mut self, simd: S, sight: &mut V) -> u32 {
+    fn pass<S: Simd, C: ObstacleFrame<S>, H: Response, V: DistanceQuery>(&mut self, simd: S, sight: &mut V) -> u32 {
         let mut course = C::new(simd, &self.passage);
         let zero = f32x8::splat(simd, 0.0);
         let (mut way, mut drift) = self.ways();
@@ -147,7 +147,7 @@ impl Past<'_, '_> {
                 }
                 for _ in 0..sight.passes() {
                     let Some(touching) = self.meet(simd, sight, &course, drift, block) else { break };
-                    let Touching { touches, mut swept, .. } = touching;
+                    let Contacts8 { touches, mut swept, .. } = touching;
                     let known = contacts;
                     if touches.any_true() {
                         let (now, left) =
@@ -193,28 +193,28 @@ impl Past<'_, '_> {
         if !self.passage.moves() && self.bodies.get(self.obstacle).is_none() {
             return (0.0, 0.0);
         }
-        let (Passage { start, end, .. }, Stretches { pose, far, .. }) = (&self.passage, &self.stretches);
+        let (ObstacleSweep { start, end, .. }, CandidateRanges { pose, far, .. }) = (&self.passage, &self.stretches);
         let since = |to: &Isometry3d| sweep::way_between(pose, to, *far);
         (since(start).max(since(end)), sweep::way_between(start, end, *far))
     }
 
     /// How a block meets the surface. None where it doesn't.
     #[inline(always)]
-    fn meet<S: Simd, C: Course<S>>(
+    fn meet<S: Simd, C: ObstacleFrame<S>>(
         &self,
         simd: S,
-        sight: &impl Sight,
+        sight: &impl DistanceQuery,
         course: &C,
         drift: f32,
         block: usize,
-    ) -> Option<Touching<S>> {
-        let Passage { distance, parting, .. } = self.passage;
+    ) -> Option<Contacts8<S>> {
+        let ObstacleSweep { distance, parting, .. } = self.passage;
         let zero = f32x8::splat(simd, 0.0);
         let place = Vec3x8::load(simd, &self.run.position[block]);
         let before = Vec3x8::load(simd, &self.run.previous[block]);
         let inverse_mass = lane(simd, &self.run.inverse_mass[block]);
         let local = course.to_local(place);
-        let after = sight.seen(simd, local);
+        let after = sight.sample(simd, local);
         // A particle that is farther away than it can have come this substep is left alone.
         let (depth, way) = (-after.distance + distance, place - before);
         let beyond = (-depth - drift).max(zero);
@@ -234,7 +234,7 @@ impl Past<'_, '_> {
         let is_deep = was_inside.simd_gt(most);
         let normal = course.turned(after.normal);
         let way = course.past(way, local + after.normal * depth) - course.turned(sight.own_way(simd, local));
-        Some(Touching {
+        Some(Contacts8 {
             place,
             before,
             inverse_mass,
@@ -252,7 +252,7 @@ impl Past<'_, '_> {
     /// then from where its stretch was, m, if it was.
     #[cold]
     #[inline(never)]
-    fn sweep(&mut self, sight: &impl Sight, block: usize, i: usize) -> Option<f32> {
+    fn sweep(&mut self, sight: &impl DistanceQuery, block: usize, i: usize) -> Option<f32> {
         let get = |[x, y, z]: &Block| Vec3A::new(x[i], y[i], z[i]);
         let (mut position, mut previous) = (get(&self.run.position[block]), get(&self.run.previous[block]));
         let correction = sight.correction(i, &self.passage, position, previous)?;

@@ -3,21 +3,21 @@
 use bevy::math::{Vec3, Vec3A};
 
 use super::{
-    pair::{Features, Nearest, Pair},
-    surface::{Bounds, Places, Surface, edges_of},
+    pair::{Features, ClosestPoints, FeatureContact},
+    surface::{Bounds, BvhBounds, TriangleBvh, edges_of},
     tangle,
 };
 
 /// Where points are when a search is made, and where they go.
 #[derive(Clone, Copy, Debug)]
-pub struct Ways<'a> {
+pub struct Displacements<'a> {
     /// Where they are, m.
     pub position: &'a [Vec3A],
     /// How far they will come before the next search if nothing stops them, m. None for what stays.
     pub way: &'a [Vec3A],
 }
 
-impl Ways<'_> {
+impl Displacements<'_> {
     /// How far a point will come.
     #[inline]
     fn way(&self, point: usize) -> Vec3A {
@@ -37,10 +37,10 @@ impl Ways<'_> {
 
 /// One of two surfaces that may touch.
 #[derive(Clone, Copy, Debug)]
-pub struct Side<'a> {
-    pub surface: &'a Surface,
-    pub places: &'a Places,
-    pub ways: Ways<'a>,
+pub struct ContactSide<'a> {
+    pub surface: &'a TriangleBvh,
+    pub places: &'a BvhBounds,
+    pub ways: Displacements<'a>,
     /// Number of the first of its points among all.
     pub first: u32,
     /// How sharp a corner or edge has to be that the other side may be caught on.
@@ -51,7 +51,7 @@ pub struct Side<'a> {
     pub radii: &'a [f32],
 }
 
-impl Side<'_> {
+impl ContactSide<'_> {
     #[inline]
     fn place(&self, point: u32) -> Vec3A {
         self.ways.position[point as usize]
@@ -77,7 +77,7 @@ impl Side<'_> {
 
 /// Distances of a search.
 #[derive(Clone, Copy, Debug)]
-pub struct Reach<'a> {
+pub struct QueryMargin<'a> {
     /// Distance that features are to keep, m.
     pub distance: f32,
     /// By how much features may come off their ways towards each other before the next search, m.
@@ -94,18 +94,18 @@ const AT_REST: f32 = 0.9;
 
 /// A pair that has been found.
 #[derive(Clone, Copy, Debug)]
-pub struct Found {
-    pub pair: Pair,
+pub struct Candidate {
+    pub pair: FeatureContact,
     /// Which sides the first and the second feature are of.
     pub is_first_of_a: bool,
     /// Triangle of the second feature, of a point and a face.
     pub face: usize,
     /// How far apart the features are, and where.
-    pub nearest: Nearest,
+    pub nearest: ClosestPoints,
 }
 
 /// Shows the pairs of features of triangle `s` of `a` and triangle `t` of `b` that may touch.
-pub fn pairs_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Reach, mut found: impl FnMut(Found)) {
+pub fn pairs_between((a, s): (&ContactSide, usize), (b, t): (&ContactSide, usize), reach: &QueryMargin, mut found: impl FnMut(Candidate)) {
     let (triangle, other) = (a.surface.triangles[s], b.surface.triangles[t]);
     let (mine, theirs) = (&a.surface.owned[s], &b.surface.owned[t]);
     let is_same = reach.rest.is_some();
@@ -122,7 +122,7 @@ pub fn pairs_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Rea
             let is_met = mine.corners[k] > a.sharper_than && ways[k].meets(&face);
             if is_met && !(is_same && other.contains(&corner)) {
                 let points = [corner, other[0], other[1], other[2]];
-                found_between(Features::PointFace, [a, b, b, b], points, reach, |f| found(Found { face: t, ..f }));
+                found_between(Features::PointFace, [a, b, b, b], points, reach, |f| found(Candidate { face: t, ..f }));
             }
         }
     }
@@ -132,7 +132,7 @@ pub fn pairs_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Rea
             let is_met = theirs.corners[k] > b.sharper_than && other_ways[k].meets(&face);
             if is_met && !(is_same && triangle.contains(&corner)) {
                 let points = [corner, triangle[0], triangle[1], triangle[2]];
-                let first = |f| found(Found { is_first_of_a: false, face: s, ..f });
+                let first = |f| found(Candidate { is_first_of_a: false, face: s, ..f });
                 found_between(Features::PointFace, [b, a, a, a], points, reach, first);
             }
         }
@@ -153,7 +153,7 @@ pub fn pairs_between((a, s): (&Side, usize), (b, t): (&Side, usize), reach: &Rea
 
 /// Corners of triangle `t` of `b` that have come through triangle `s` of `a`: a sharp edge pierces it, and that end of it is
 /// the nearer one to go back.
-pub fn tips_through((a, s): (&Side, usize), (b, t): (&Side, usize)) -> impl Iterator<Item = u32> {
+pub fn tips_through((a, s): (&ContactSide, usize), (b, t): (&ContactSide, usize)) -> impl Iterator<Item = u32> {
     let triangle = a.surface.triangles[s].map(|i| a.place(i));
     // What is farther through than the cloth's own edges are long has come to stay.
     let farthest = a.surface.longest_edge;
@@ -167,14 +167,14 @@ pub fn tips_through((a, s): (&Side, usize), (b, t): (&Side, usize)) -> impl Iter
 }
 
 /// The pair of a corner of `b` that has come through triangle `s` of `a`, and is to go back.
-pub fn back_through((a, s): (&Side, usize), (b, tip): (&Side, u32), reach: &Reach) -> Found {
+pub fn back_through((a, s): (&ContactSide, usize), (b, tip): (&ContactSide, u32), reach: &QueryMargin) -> Candidate {
     let triangle = a.surface.triangles[s];
     let [u, v, w] = triangle.map(|i| a.place(i));
     let nearest = Features::PointFace.nearest([b.place(tip), u, v, w]);
     let (direction, length) = nearest.between.normalize_and_length();
     let normal = if length > 0.0 { -direction } else { (v - u).cross(w - u).normalize_or(Vec3A::Y) };
     let [p, q, r] = triangle.map(|i| a.first + i);
-    let pair = Pair {
+    let pair = FeatureContact {
         features: Features::PointFace,
         points: [b.first + tip, p, q, r],
         distance: reach.distance + b.radius(tip),
@@ -183,11 +183,11 @@ pub fn back_through((a, s): (&Side, usize), (b, tip): (&Side, u32), reach: &Reac
         gap: -length,
         normal,
     };
-    Found { pair, is_first_of_a: false, face: s, nearest }
+    Candidate { pair, is_first_of_a: false, face: s, nearest }
 }
 
 /// Shows the pairs of points of leaf `p` of `a` and leaf `q` of `b` that may touch as balls.
-pub fn balls_between((a, p): (&Side, u32), (b, q): (&Side, u32), reach: &Reach, mut found: impl FnMut(Found)) {
+pub fn balls_between((a, p): (&ContactSide, u32), (b, q): (&ContactSide, u32), reach: &QueryMargin, mut found: impl FnMut(Candidate)) {
     let is_one_leaf = reach.rest.is_some() && p == q;
     for &point in a.surface.points_of_leaf(p) {
         let way = a.way_of(point).grown(reach.distance + reach.slack);
@@ -204,7 +204,7 @@ pub fn balls_between((a, p): (&Side, u32), (b, q): (&Side, u32), reach: &Reach, 
 const OPEN: f32 = 0.3;
 
 /// Whether two triangles of a surface that share a corner are far from folding up onto each other.
-fn is_open(side: &Side, triangle: [u32; 3], other: [u32; 3]) -> bool {
+fn is_open(side: &ContactSide, triangle: [u32; 3], other: [u32; 3]) -> bool {
     let normal = |triangle: [u32; 3]| {
         let [a, b, c] = triangle.map(|i| side.ways.position[i as usize]);
         (b - a).cross(c - a)
@@ -215,7 +215,7 @@ fn is_open(side: &Side, triangle: [u32; 3], other: [u32; 3]) -> bool {
 
 /// `distance` (m), or what features of one cloth may keep of it that are nearer to each other at rest.
 #[inline]
-fn distance_at_rest(features: Features, points: [u32; 4], rest: &[Vec3], distance: f32, side: &Side) -> f32 {
+fn distance_at_rest(features: Features, points: [u32; 4], rest: &[Vec3], distance: f32, side: &ContactSide) -> f32 {
     let [a, b, c, d] = points;
     let [a, b, c, d] = [rest[a as usize], rest[b as usize], rest[c as usize], rest[d as usize]];
     // Mostly they are far apart in the cloth: no two places of theirs are nearer than that.
@@ -229,7 +229,7 @@ fn distance_at_rest(features: Features, points: [u32; 4], rest: &[Vec3], distanc
 
 /// Shows a pair of features if it may touch.
 #[inline]
-fn found_between(features: Features, sides: [&Side; 4], points: [u32; 4], reach: &Reach, found: impl FnOnce(Found)) {
+fn found_between(features: Features, sides: [&ContactSide; 4], points: [u32; 4], reach: &QueryMargin, found: impl FnOnce(Candidate)) {
     let ([s0, s1, s2, s3], [p0, p1, p2, p3]) = (sides, points);
     let places = [s0.place(p0), s1.place(p1), s2.place(p2), s3.place(p3)];
     let [w0, w1, w2, w3] = [s0.way(p0), s1.way(p1), s2.way(p2), s3.way(p3)];
@@ -256,6 +256,6 @@ fn found_between(features: Features, sides: [&Side; 4], points: [u32; 4], reach:
     let (direction, length) = nearest.between.normalize_and_length();
     let normal = if length > 0.0 { direction } else { Vec3A::Y };
     let points = [s0.first + p0, s1.first + p1, s2.first + p2, s3.first + p3];
-    let pair = Pair { features, points, distance, taper, friction: reach.friction, gap: length, normal };
-    found(Found { pair, is_first_of_a: true, face: 0, nearest });
+    let pair = FeatureContact { features, points, distance, taper, friction: reach.friction, gap: length, normal };
+    found(Candidate { pair, is_first_of_a: true, face: 0, nearest });
 }

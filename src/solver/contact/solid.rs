@@ -12,7 +12,7 @@ mod ellipsoid;
 mod field;
 
 pub use ellipsoid::Ellipsoid;
-pub(super) use field::{Field, Seen};
+pub(super) use field::{SignedDistanceField, SignedDistance};
 
 /// A solid whose signed distance has a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
@@ -57,32 +57,32 @@ impl TaperedCapsule {
 
 /// The nearest place on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
+pub struct SurfacePoint {
     /// Distance to the surface, m; negative inside.
     pub distance: f32,
     /// Outward unit normal there.
     pub normal: Vec3A,
 }
 
-impl From<Seen<f32>> for Surface {
-    fn from(Seen { distance, normal }: Seen<f32>) -> Self {
+impl From<SignedDistance<f32>> for SurfacePoint {
+    fn from(SignedDistance { distance, normal }: SignedDistance<f32>) -> Self {
         Self { distance, normal: normal.into() }
     }
 }
 
 impl Solid {
     /// The surface as seen from `point` (m, in the solid's own frame).
-    pub fn surface(&self, point: Vec3A) -> Surface {
+    pub fn surface(&self, point: Vec3A) -> SurfacePoint {
         let point = point.into();
-        Surface::from(match self {
-            Self::Sphere(sphere) => sphere.seen(point),
-            Self::Ellipsoid(ellipsoid) => ellipsoid.seen(point),
-            Self::Cuboid(cuboid) => cuboid.seen(point),
-            Self::Capsule(capsule) => capsule.seen(point),
-            Self::TaperedCapsule(capsule) => capsule.seen(point),
-            Self::Cylinder(cylinder) => cylinder.seen(point),
-            Self::Cone(cone) => cone.seen(point),
-            Self::HalfSpace(plane) => plane.seen(point),
+        SurfacePoint::from(match self {
+            Self::Sphere(sphere) => sphere.sample(point),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.sample(point),
+            Self::Cuboid(cuboid) => cuboid.sample(point),
+            Self::Capsule(capsule) => capsule.sample(point),
+            Self::TaperedCapsule(capsule) => capsule.sample(point),
+            Self::Cylinder(cylinder) => cylinder.sample(point),
+            Self::Cone(cone) => cone.sample(point),
+            Self::HalfSpace(plane) => plane.sample(point),
         })
     }
 

@@ -12,8 +12,8 @@ use bevy::{math::Vec3, platform::collections::HashSet};
 mod places;
 mod walk;
 
-pub use places::{Bounds, Places};
-pub use walk::Walk;
+pub use places::{Bounds, BvhBounds};
+pub use walk::Traversal;
 
 /// Triangles to a leaf, about.
 const LEAF: usize = 4;
@@ -24,7 +24,7 @@ const LEAF: usize = 4;
 /// With each goes how sharp it is, 0..=1: by which share of the distance to a neighbour it stands out of what it joins.
 /// Those of cloth count as sharp; 0 is for those of another triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Owned {
+pub struct Representative {
     /// Its three corners.
     pub corners: [f32; 3],
     /// Its three edges; edge k is between its corners k and k + 1.
@@ -33,11 +33,11 @@ pub struct Owned {
 
 /// Triangles in the order of their tree.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surface {
+pub struct TriangleBvh {
     /// Corners of each triangle, leaf after leaf.
     pub triangles: Vec<[u32; 3]>,
     /// What belongs to each triangle.
-    pub owned: Vec<Owned>,
+    pub owned: Vec<Representative>,
     /// Mean length of the edges at rest, m.
     pub mean_edge: f32,
     /// Length of the longest edge at rest, m.
@@ -54,7 +54,7 @@ pub struct Surface {
     leaves: usize,
 }
 
-impl Surface {
+impl TriangleBvh {
     /// Sorts `triangles` between points at `rest` (m).
     pub fn new(rest: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let mut triangles = triangles.to_vec();
@@ -68,7 +68,7 @@ impl Surface {
             let corners = triangle.map(|i| mine(!core::mem::replace(&mut seen_corners[i as usize], true)));
             let [a, b, c] = *triangle;
             let edges = [(a, b), (b, c), (c, a)].map(|(p, q)| mine(p != q && seen_edges.insert((p.min(q), p.max(q)))));
-            Owned { corners, edges }
+            Representative { corners, edges }
         };
         let owned = triangles.iter().map(own).collect();
         let mut surface = Self { triangles, owned, leaves, ..Self::default() };
@@ -82,7 +82,7 @@ impl Surface {
     }
 
     /// Makes what belongs to each triangle as sharp as `sharpness` says.
-    pub fn blunt(&mut self, sharpness: &[Owned]) {
+    pub fn blunt(&mut self, sharpness: &[Representative]) {
         for (owned, sharp) in self.owned.iter_mut().zip(sharpness) {
             for i in 0..3 {
                 owned.corners[i] *= sharp.corners[i];

@@ -2,12 +2,12 @@
 
 use bevy::math::{Isometry3d, Quat, Vec3A, primitives::InfinitePlane3d};
 
-use super::{Obstacle, Solid, Surface, solid::Field};
+use super::{Obstacle, Solid, SurfacePoint, solid::SignedDistanceField};
 use crate::solver::StepContext;
 
 /// An obstacle within one substep.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Passage {
+pub(super) struct ObstacleSweep {
     /// Pose at the start of the substep.
     pub start: Isometry3d,
     /// Pose at its end.
@@ -35,7 +35,7 @@ pub(super) struct Correction {
     pub surface_way: Vec3A,
 }
 
-impl Passage {
+impl ObstacleSweep {
     /// That of `obstacle`, which goes from one pose to the other within a substep of `h` seconds.
     pub fn new(obstacle: &Obstacle, [start, end]: [Isometry3d; 2], ctx: &StepContext, h: f32) -> Self {
         let distance = ctx.contact_distance() + obstacle.rounding;
@@ -60,7 +60,7 @@ impl Passage {
     }
 
     /// The correction of a particle that went from `previous` to `position` past a solid: the way in decides.
-    pub fn correction(&self, solid: &impl Field, position: Vec3A, previous: Vec3A) -> Option<Correction> {
+    pub fn correction(&self, solid: &impl SignedDistanceField, position: Vec3A, previous: Vec3A) -> Option<Correction> {
         let to = self.end.inverse().transform_point(position);
         let from = self.start.inverse().transform_point(previous);
         let (entry, surface) = self.enter(solid, from, to)?;
@@ -78,7 +78,7 @@ impl Passage {
     }
 
     /// Where the straight way from `from` to `to` enters a solid, and the surface there. Sphere tracing (Hart 1996).
-    fn enter(&self, solid: &impl Field, from: Vec3A, to: Vec3A) -> Option<(Vec3A, Surface)> {
+    fn enter(&self, solid: &impl SignedDistanceField, from: Vec3A, to: Vec3A) -> Option<(Vec3A, SurfacePoint)> {
         const CLOSE: f32 = 1e-5;
         const STEPS: u32 = 32;
         let (direction, length) = (to - from).normalize_and_length();
@@ -86,7 +86,7 @@ impl Passage {
         let mut last = None;
         for _ in 0..STEPS {
             let point = from + direction * way;
-            let mut surface = Surface::from(solid.seen(point.into()));
+            let mut surface = SurfacePoint::from(solid.sample(point.into()));
             surface.distance -= self.distance;
             if surface.distance < CLOSE {
                 return Some((point, surface));

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3A;
 
-use super::pair::{Points, give};
+use super::pair::{FeaturePoints, give};
 
 /// Whether two triangles without a common corner pass through each other: an edge of one pierces the other.
 pub fn intersect(first: [Vec3A; 3], other: [Vec3A; 3]) -> bool {
@@ -82,7 +82,7 @@ pub fn find(numbers: [[u32; 3]; 2], places: &[Vec3A], tangles: &mut Vec<Tangle>)
 
 impl Tangle {
     /// Moves edge and face against each other by `far` (m).
-    pub fn solve(&self, points: &mut Points, far: f32) {
+    pub fn solve(&self, points: &mut FeaturePoints, far: f32) {
         let all = self.points.map(|i| i as usize);
         let masses = all.map(|i| points.inverse_mass[i]);
         let give = give(self.weights, masses);

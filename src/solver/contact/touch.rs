@@ -8,10 +8,10 @@ use core::ops::Range;
 use bevy::math::Vec3A;
 
 use super::{
-    outline::Sharp,
-    pair::{Pair, Points},
-    search::Ways,
-    surface::{Places, Surface, Walk},
+    outline::Sharpness,
+    pair::{FeatureContact, FeaturePoints},
+    search::Displacements,
+    surface::{BvhBounds, TriangleBvh, Traversal},
     tangle::Tangle,
 };
 use crate::solver::{
@@ -27,8 +27,8 @@ mod outlines;
 mod places;
 mod target;
 
-use lead::BodyWay;
-use obstacle::{Approach, AtObstacle, Fixed};
+use lead::PredictedBodyMotion;
+use obstacle::{ClothMotion, ObstacleSearch, ObstaclePoint};
 
 /// How far particles may come off their way before there is another search: this share of the mean edge at most.
 const SLACK: f32 = 0.2;
@@ -82,14 +82,14 @@ pub fn longest_edge<'a>(
     let at_rest = surface.longest_edge;
     let fit_once_stretched = near.filter(|obstacle| {
         let Shape::Solid(solid) = &obstacle.shape else { return false };
-        let fits = |edge| outlines::tightness(obstacle, edge, ctx).pierced_by(solid) == Some(Sharp::Tip);
+        let fits = |edge| outlines::tightness(obstacle, edge, ctx).pierced_by(solid) == Some(Sharpness::Tip);
         fits(2.0 * at_rest) && !fits(at_rest)
     });
     let ways = fit_once_stretched.map(|obstacle| obstacle.start.translation.distance(obstacle.end.translation));
     let Some(way) = ways.reduce(f32::max) else { return at_rest };
     let place = |i: u32| particles.position[i as usize];
     let longest = surface.edges().map(|[p, q]| place(p).distance_squared(place(q))).fold(0.0, f32::max).sqrt();
-    let outrun = at_rest + way / ctx.effort.careful_substeps as f32;
+    let outrun = at_rest + way / ctx.effort.contact_substeps as f32;
     if longest.max(outrun) > STRETCHED * at_rest { 2.0 * at_rest } else { at_rest }
 }
 
@@ -102,7 +102,7 @@ pub fn sharpest<'a>(
     longest_edge: f32,
     ctx: &StepContext,
     dt: f32,
-) -> Option<(Sharp, f32)> {
+) -> Option<(Sharpness, f32)> {
     let sharp = near.filter_map(|obstacle| match &obstacle.shape {
         Shape::Solid(solid) => {
             let sharp = outlines::tightness(obstacle, longest_edge, ctx).pierced_by(solid)?;
@@ -128,16 +128,16 @@ impl Running<'_> {
         self.topology.self_distance(mode, self.ctx.self_distance)
     }
 
-    fn surface(&self) -> &Surface {
+    fn surface(&self) -> &TriangleBvh {
         self.topology.surface()
     }
 }
 
 /// Working memory and what is found.
 #[derive(Clone, Debug, Default)]
-pub struct Touch {
+pub struct FeatureContacts {
     /// All particles, then the points of obstacles.
-    points: Points,
+    points: FeaturePoints,
     /// Number of the first particle of each cloth, and of the first that is none.
     first: Vec<u32>,
     /// Where particles were at the search, m, and how far they will come until the step's end.
@@ -147,22 +147,22 @@ pub struct Touch {
     searched: Range<f32>,
     /// By how much the particles of each cloth may come off their ways, m.
     slack: Vec<f32>,
-    places: Vec<Places>,
-    pairs: Vec<Pair>,
+    places: Vec<BvhBounds>,
+    pairs: Vec<FeatureContact>,
     tangles: Vec<Tangle>,
     is_tangled: Vec<bool>,
     /// Numbers of the pairs that touched an obstacle.
     at_obstacles: Vec<u32>,
     leaves: Vec<(u32, u32)>,
-    walk: Walk,
-    fixed: Vec<Fixed>,
-    body_ways: Vec<BodyWay>,
-    at_obstacle: AtObstacle,
+    walk: Traversal,
+    fixed: Vec<ObstaclePoint>,
+    body_ways: Vec<PredictedBodyMotion>,
+    at_obstacle: ObstacleSearch,
     /// Whether there has been a search in this step.
     is_begun: bool,
 }
 
-impl Touch {
+impl FeatureContacts {
     /// Begins a step: nothing is known yet. Returns whether there may be anything to do.
     pub fn begin(&mut self, cloths: &[Running]) -> bool {
         self.is_begun = false;
@@ -205,10 +205,10 @@ impl Touch {
                 continue;
             }
             let particles = self.particles(number);
-            let ways = Ways { position: &self.start[particles.clone()], way: &self.way[particles] };
+            let ways = Displacements { position: &self.start[particles.clone()], way: &self.way[particles] };
             let (first, total) = (self.first[number], self.start.len());
             let (slack, span) = (self.slack[number], self.searched.clone());
-            let at = Approach { cloth, number, first, total, ways, slack, span, dt };
+            let at = ClothMotion { cloth, number, first, total, ways, slack, span, dt };
             for i in 0..cloth.ctx.obstacles.len() {
                 self.at_obstacle.search(&at, i, &mut self.walk, (&mut self.fixed, &mut self.pairs));
             }
@@ -230,7 +230,7 @@ impl Touch {
         for (i, cloth) in cloths.iter().enumerate() {
             let particles = self.particles(i);
             let Lanes { order, velocity, .. } = &cloth.scratch.lanes;
-            velocity.store(*order, &mut self.way[particles.clone()], cloth.scratch.instructions);
+            velocity.store(*order, &mut self.way[particles.clone()], cloth.scratch.simd_level);
             let masses =
                 (0..particles.len() as u32).map(|particle| cloth.scratch.lanes.inverse_mass(order.slot(particle)));
             self.points.inverse_mass.extend(masses);
@@ -273,7 +273,7 @@ impl Touch {
             let fall = cloth.ctx.gravity * (0.5 * FALL * left * left);
             let way = &mut self.way[particles];
             way.iter_mut().for_each(|way| *way = *way * left + fall);
-            for anchor in cloth.ctx.anchors {
+            for anchor in cloth.ctx.pin_motions {
                 way[anchor.particle as usize] = (anchor.end - anchor.start) * share;
             }
         }

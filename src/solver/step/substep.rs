@@ -5,22 +5,22 @@ use bevy::{math::Vec3A, tasks::TaskPool};
 use crate::solver::{
     Lattice, LevelPass, Method, Particles, Scratch, StepContext, Tethers, Topology,
     constraint::{
-        bend::Bending,
-        braid::Strung,
-        diagonal::{self, CellYarn},
+        bend::BendSolver,
+        braid::StrandPackSolver,
+        diagonal::{self, CellMaterial},
         grab,
         law::Scaled,
-        level::LevelRun,
-        loose::Loose,
-        plate, tether,
-        weave::{self, Last, Weaver},
-        yarn::Yarn,
+        level::LevelSolve,
+        loose::UnstructuredPass,
+        bend_factors, tether,
+        weave::{self, StrandDirection, GridStrandSolver},
+        yarn::StrandMaterial,
     },
     explicit::{self, Stability},
     force::wind,
     integrate::{self, Finish, Motion, SpeedLimit},
     lanes::{Points, Run},
-    share::{self, Bench, Work},
+    share::{self, WorkerScratch, SharedStep},
 };
 
 /// What all substeps of a step have in common.
@@ -41,7 +41,7 @@ pub(super) struct Substep<'a> {
     pub limit: SpeedLimit,
     /// The threads that share the work, and the lattice that all springs are on.
     pub helpers: Option<(&'a TaskPool, &'a Lattice)>,
-    pub last: Last,
+    pub last: StrandDirection,
     pub levels: &'a [LevelPass],
     /// By how much of its length a tether gives, no unit.
     pub slack: f32,
@@ -52,19 +52,19 @@ impl Substep<'_> {
     pub fn prepare(&self, scratch: &mut Scratch) {
         let is_solved = self.ctx.method != Method::Explicit;
         let woven = self.ctx.method == Method::Xpbd;
-        let bending = || Bending::new(self.topology, woven, &self.ctx.material, &scratch.lanes, self.h);
+        let bending = || BendSolver::new(self.topology, woven, &self.ctx.material, &scratch.lanes, self.h);
         scratch.bending = is_solved.then(bending).flatten();
         // Threads that share the work have done it already.
         if self.ctx.method == Method::Strands && self.topology.lattice.is_some() && self.helpers.is_none() {
             for band in scratch.lanes.order.bands() {
                 let Run { inverse_mass, row_masses, .. } = scratch.lanes.band(band);
-                weave::masses_along_rows(inverse_mass, band, row_masses, scratch.instructions);
+                weave::masses_along_rows(inverse_mass, band, row_masses, scratch.simd_level);
             }
         }
         if let Some(lattice) = self.topology.lattice.as_ref().filter(|_| self.ctx.method == Method::Strands) {
-            let Scratch { lanes, plate, bench, instructions, .. } = &mut *scratch;
-            let yarn = Yarn::new(&self.ctx.material, self.h);
-            plate::prepare(plate, lattice, yarn, lanes, &mut bench.loom, *instructions);
+            let Scratch { lanes, bend_factors, bench, simd_level, .. } = &mut *scratch;
+            let yarn = StrandMaterial::new(&self.ctx.material, self.h);
+            bend_factors::prepare(bend_factors, lattice, yarn, lanes, &mut bench.strand_scratch, *simd_level);
         }
         if let Some(run) = self.levels(scratch) {
             scratch.levels.fit(&run, &scratch.lanes);
@@ -73,35 +73,35 @@ impl Substep<'_> {
 
     /// Sums up the forces that act for the next `interval` substeps.
     pub fn renew_steady_force(&self, particles: &mut Particles, interval: u32, scratch: &mut Scratch) {
-        let Scratch { lanes, air, steady_force, applied_force, instructions, .. } = scratch;
+        let Scratch { lanes, air, steady_force, applied_force, simd_level, .. } = scratch;
         if !self.is_pushed {
             return;
         }
         steady_force.clone_from(&particles.force);
         if wind::feels_air(self.ctx) {
-            lanes.store(particles, *instructions);
+            lanes.store(particles, *simd_level);
             wind::apply_air(particles, self.topology, self.ctx, self.h * interval as f32, air, steady_force);
         }
-        applied_force.load(lanes.order, steady_force, *instructions);
+        applied_force.load(lanes.order, steady_force, *simd_level);
     }
 
     /// Adds the forces of the springs to the steady one.
     pub fn add_spring_forces(&self, particles: &mut Particles, scratch: &mut Scratch) {
-        let Scratch { lanes, steady_force, force, applied_force, instructions, .. } = scratch;
+        let Scratch { lanes, steady_force, force, applied_force, simd_level, .. } = scratch;
         steady_force.resize(particles.len(), Vec3A::ZERO);
         force.clone_from(steady_force);
-        lanes.store(particles, *instructions);
+        lanes.store(particles, *simd_level);
         explicit::add_spring_forces(particles, self.topology, &self.ctx.material, self.stability, force);
         if let Some(moduli) = self.ctx.material.moduli() {
             explicit::add_sheet_forces(particles, self.topology, moduli, self.stability, force);
         }
-        applied_force.load(lanes.order, force, *instructions);
+        applied_force.load(lanes.order, force, *simd_level);
     }
 
     /// Moves the particles as if nothing held them together.
     pub fn move_freely(&self, scratch: &mut Scratch) {
-        let Scratch { lanes, applied_force, instructions, .. } = scratch;
-        integrate::predict(&mut lanes.whole(), self.motion(applied_force), *instructions);
+        let Scratch { lanes, applied_force, simd_level, .. } = scratch;
+        integrate::predict(&mut lanes.whole(), self.motion(applied_force), *simd_level);
     }
 
     fn motion<'a>(&self, force: &'a Points) -> Motion<'a> {
@@ -128,13 +128,13 @@ impl Substep<'_> {
             let Scratch { lanes, bench, pins, levels, .. } = scratch;
             levels.solve(run, lanes, pins, bench);
         }
-        let yarn = Yarn::new(&self.ctx.material, self.h);
+        let yarn = StrandMaterial::new(&self.ctx.material, self.h);
         if let Some((pool, lattice)) = self.helpers {
-            let Scratch { lanes, pins, levels, plate, benches, applied_force, instructions, .. } = scratch;
+            let Scratch { lanes, pins, levels, bend_factors, benches, applied_force, simd_level, .. } = scratch;
             let finish = (!self.is_near && !self.touches).then(|| self.finish(applied_force, goes_on));
-            let work = Work {
-                weaver: Weaver { lattice, yarn, plate, instructions: *instructions },
-                cells: CellYarn::new(&self.ctx.material, self.h, plate),
+            let work = SharedStep {
+                weaver: GridStrandSolver { lattice, yarn, bend_factors, simd_level: *simd_level },
+                cells: CellMaterial::new(&self.ctx.material, self.h, bend_factors),
                 last: self.last,
                 levels: run.as_ref().map(|run| (run, &*levels)),
                 tethers: self.ctx.tethers.map_or(&[], Tethers::of_cloth),
@@ -152,51 +152,51 @@ impl Substep<'_> {
             }
         }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, ways, bending, bench: Bench { loom, seam, bias, .. }, plate, instructions, .. } =
+        let Scratch { lanes, beads, ways, bending, bench: WorkerScratch { strand_scratch, seam, bias, .. }, bend_factors, simd_level, .. } =
             scratch;
         let (material, h) = (&self.ctx.material, self.h);
-        let braids = &self.topology.braids;
-        let strung = (!braids.is_empty()).then_some(Strung { braids, yarn, loom: &mut *loom });
-        self.loose(false, *bending, strung).solve(lanes, beads, ways, *instructions);
+        let strand_packs = &self.topology.strand_packs;
+        let strand_pack_solver = (!strand_packs.is_empty()).then_some(StrandPackSolver { strand_packs, yarn, strand_scratch: &mut *strand_scratch });
+        self.loose(false, *bending, strand_pack_solver).solve(lanes, beads, ways, *simd_level);
         if let Some(lattice) = &self.topology.lattice {
             let mut run = lanes.whole();
             let mut sheet = run.sheet();
-            diagonal::solve(&mut sheet, lattice, CellYarn::new(material, h, plate), seam, bias, *instructions);
-            Weaver { lattice, yarn, plate, instructions: *instructions }.solve(&mut sheet, self.last, loom);
+            diagonal::solve(&mut sheet, lattice, CellMaterial::new(material, h, bend_factors), seam, bias, *simd_level);
+            GridStrandSolver { lattice, yarn, bend_factors, simd_level: *simd_level }.solve(&mut sheet, self.last, strand_scratch);
         }
         false
     }
 
     /// All springs, colour after colour.
     pub fn solve_springs(&self, scratch: &mut Scratch) {
-        let Scratch { lanes, beads, ways, bending, instructions, .. } = scratch;
-        self.loose(true, *bending, None).solve(lanes, beads, ways, *instructions);
+        let Scratch { lanes, beads, ways, bending, simd_level, .. } = scratch;
+        self.loose(true, *bending, None).solve(lanes, beads, ways, *simd_level);
     }
 
-    fn loose<'a>(&'a self, woven: bool, bending: Option<Bending>, strung: Option<Strung<'a>>) -> Loose<'a> {
-        Loose { topology: self.topology, material: &self.ctx.material, h: self.h, woven, bending, strung }
+    fn loose<'a>(&'a self, woven: bool, bending: Option<BendSolver>, strand_pack_solver: Option<StrandPackSolver<'a>>) -> UnstructuredPass<'a> {
+        UnstructuredPass { topology: self.topology, material: &self.ctx.material, h: self.h, woven, bending, strand_pack_solver }
     }
 
     /// Tethers to hands, then those to pins.
     pub fn solve_tethers(&self, scratch: &mut Scratch) {
-        let Scratch { lanes, pins, instructions, .. } = scratch;
+        let Scratch { lanes, pins, simd_level, .. } = scratch;
         grab::solve_tethers(lanes, self.ctx.grabs, self.slack);
         if let Some(tethers) = self.ctx.tethers {
             let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
-            tether::solve(position, inverse_mass, 0, tethers.of_cloth(), pins, self.slack, *instructions);
+            tether::solve(position, inverse_mass, 0, tethers.of_cloth(), pins, self.slack, *simd_level);
         }
     }
 
     /// The coarse levels, if there are tethers: both hold the cloth within its length.
-    fn levels(&self, scratch: &Scratch) -> Option<LevelRun<'_>> {
-        Some(LevelRun {
+    fn levels(&self, scratch: &Scratch) -> Option<LevelSolve<'_>> {
+        Some(LevelSolve {
             levels: &self.topology.levels,
             passes: self.levels,
             tethers: self.ctx.tethers.filter(|tethers| !tethers.is_empty())?,
             slack: self.slack,
             stretch: Scaled::new(self.ctx.material.thread_stiffness(), self.h),
             last: self.last,
-            instructions: scratch.instructions,
+            simd_level: scratch.simd_level,
         })
     }
 }

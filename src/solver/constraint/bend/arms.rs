@@ -2,10 +2,10 @@
 
 use fearless_simd::{f32x8, prelude::*};
 
-use super::Bending;
+use super::BendSolver;
 use crate::solver::{
     Bend,
-    constraint::beads::{Beads, gather},
+    constraint::beads::{GatheredParticles, gather},
     lanes::{apart, together},
     simd::{LANES, SHORTEST, Vec3x8, lane},
 };
@@ -17,17 +17,17 @@ const FOLDED: f32 = 3.0;
 #[inline(always)]
 pub fn pull_batch<S: Simd, const FRAMED: bool>(
     simd: S,
-    beads: &Beads,
+    beads: &GatheredParticles,
     pull: &mut [[f32; 4]],
     bends: &[Bend],
-    bending: Bending,
+    bending: BendSolver,
 ) {
     let (groups, rest) = bends.as_chunks::<LANES>();
     for bends in groups {
         pull_eight::<S, FRAMED>(simd, beads, pull, bends, bending);
     }
     if !rest.is_empty() {
-        let mut bends = [Bend { particles: [beads.nobody(); 4], ..Bend::default() }; LANES];
+        let mut bends = [Bend { particles: [beads.dummy(); 4], ..Bend::default() }; LANES];
         bends[..rest.len()].copy_from_slice(rest);
         pull_eight::<S, FRAMED>(simd, beads, pull, &bends, bending);
     }
@@ -36,10 +36,10 @@ pub fn pull_batch<S: Simd, const FRAMED: bool>(
 #[inline(always)]
 fn pull_eight<S: Simd, const FRAMED: bool>(
     simd: S,
-    beads: &Beads,
+    beads: &GatheredParticles,
     pull: &mut [[f32; 4]],
     bends: &[Bend; LANES],
-    bending: Bending,
+    bending: BendSolver,
 ) {
     let [b0, b1, b2, b3, b4, b5, b6, b7] = bends;
     macro_rules! each {
@@ -61,12 +61,12 @@ fn pull_eight<S: Simd, const FRAMED: bool>(
         [&b0.weights, &b1.weights, &b2.weights, &b3.weights, &b4.weights, &b5.weights, &b6.weights, &b7.weights];
     let [_, w1, w2, w3] = apart(simd, eight);
     let weights = [w1, w2, w3];
-    let arms = Arms::of(simd, &beads.now, &particles);
+    let arms = BendElement8::of(simd, &beads.now, &particles);
     let pulls = if FRAMED {
         let rest =
             Vec3x8 { x: lane(simd, &each!(rest[0])), y: lane(simd, &each!(rest[1])), z: lane(simd, &each!(rest[2])) };
         // Nobody reads it where nothing is damped, and nobody has written it then.
-        let before = if bending.c > 0.0 { Arms::of(simd, &beads.before, &particles) } else { arms };
+        let before = if bending.c > 0.0 { BendElement8::of(simd, &beads.before, &particles) } else { arms };
         arms.pull_framed(simd, before, weights, rest, bending)
     } else {
         arms.pull(weights, bending)
@@ -89,9 +89,9 @@ fn add<S: Simd>(simd: S, pull: &mut [[f32; 4]], particles: &[u32; LANES], Vec3x8
 
 /// Eight bends: from the first particle to the others. With the differences, the numbers are small wherever the cloth is.
 #[derive(Clone, Copy)]
-struct Arms<S: Simd>([Vec3x8<S>; 3]);
+struct BendElement8<S: Simd>([Vec3x8<S>; 3]);
 
-impl<S: Simd> Arms<S> {
+impl<S: Simd> BendElement8<S> {
     #[inline(always)]
     fn of(simd: S, beads: &[[f32; 4]], [p0, p1, p2, p3]: &[[u32; LANES]; 4]) -> Self {
         let [x, y, z, _] = gather(simd, beads, p0);
@@ -111,7 +111,7 @@ impl<S: Simd> Arms<S> {
 
     /// What pulls at the particles but the first, where the cloth is flat at rest and nothing is damped.
     #[inline(always)]
-    fn pull(&self, weights: [f32x8<S>; 3], bending: Bending) -> [Vec3x8<S>; 3] {
+    fn pull(&self, weights: [f32x8<S>; 3], bending: BendSolver) -> [Vec3x8<S>; 3] {
         let [w1, w2, w3] = weights;
         let [k1, k2, k3] = [w1 * bending.k, w2 * bending.k, w3 * bending.k];
         let sum = self.sum(weights);
@@ -126,7 +126,7 @@ impl<S: Simd> Arms<S> {
         before: Self,
         weights: [f32x8<S>; 3],
         rest: Vec3x8<S>,
-        bending: Bending,
+        bending: BendSolver,
     ) -> [Vec3x8<S>; 3] {
         let [w1, w2, w3] = weights;
         let sum = self.sum(weights);
@@ -182,12 +182,12 @@ mod tests {
         *,
     };
     use crate::solver::{
-        Instructions, Moduli,
-        constraint::bend::{Bent, stages::Stages},
+        SimdLevel, Moduli,
+        constraint::bend::{BendElement, stages::Stages},
     };
 
     /// What eleven copies of a bend pull with, each at its own particles.
-    fn pulls(bend: Bend, now: [Vec3A; 4], before: [Vec3A; 4], bending: Bending) -> Vec<Vec3A> {
+    fn pulls(bend: Bend, now: [Vec3A; 4], before: [Vec3A; 4], bending: BendSolver) -> Vec<Vec3A> {
         const COUNT: usize = 11;
         let bends: Vec<Bend> =
             (0..COUNT as u32).map(|i| Bend { particles: [4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3], ..bend }).collect();
@@ -195,11 +195,11 @@ mod tests {
             let points = points.map(|p| [p.x, p.y, p.z, 1.0]);
             points.into_iter().cycle().take(4 * COUNT).chain([[0.0; 4]]).collect()
         };
-        let beads = Beads { now: list(now), before: list(before) };
+        let beads = GatheredParticles { now: list(now), before: list(before) };
         let mut pull = vec![[0.0; 4]; beads.now.len()];
-        for instructions in [Instructions::Best, Instructions::Baseline] {
+        for simd_level in [SimdLevel::Best, SimdLevel::Baseline] {
             pull.fill([0.0; 4]);
-            dispatch!(instructions.level(), simd => match bending.framed {
+            dispatch!(simd_level.level(), simd => match bending.framed {
                 true => pull_batch::<_, true>(simd, &beads, &mut pull, &bends, bending),
                 false => pull_batch::<_, false>(simd, &beads, &mut pull, &bends, bending),
             });
@@ -208,8 +208,8 @@ mod tests {
         pull[..4].iter().map(|&[x, y, z, _]| Vec3A::new(x, y, z)).collect()
     }
 
-    fn bending(k: f32, c: f32, framed: bool) -> Bending {
-        Bending { k, c, framed, stages: Stages::for_rate(1.0).0 }
+    fn bending(k: f32, c: f32, framed: bool) -> BendSolver {
+        BendSolver { k, c, framed, stages: Stages::for_rate(1.0).0 }
     }
 
     proptest! {
@@ -222,7 +222,7 @@ mod tests {
             let before = [0, 1, 2, 3].map(|i| now[i] - velocities[i]);
             let moduli = Moduli { bending: 2.0, bend_damping: 0.25, ..Moduli::default() };
             let bend = hinge();
-            let expected = Bent::new(&bend, now).forces(&bend, &moduli, &Bent::new(&bend, velocities));
+            let expected = BendElement::new(&bend, now).forces(&bend, &moduli, &BendElement::new(&bend, velocities));
             for (pull, force) in pulls(bend, now, before, bending(2.0, 0.5, true)).into_iter().zip(expected) {
                 prop_assert!((pull + force).length() < 1e-3 * (1.0 + force.length()), "{pull} {force}");
             }

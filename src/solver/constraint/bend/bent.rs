@@ -6,14 +6,14 @@ use crate::solver::{Bend, Moduli, simd::SHORTEST};
 
 /// One bend: what the forces of the textbook and the energy follow.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct Bent {
+pub(in crate::solver) struct BendElement {
     edge: Vec3A,
     span: Vec3A,
     /// s, no unit.
     sum: Vec3A,
 }
 
-impl Bent {
+impl BendElement {
     /// Between four points.
     pub fn new(bend: &Bend, [p0, p1, p2, p3]: [Vec3A; 4]) -> Self {
         let [_, w1, w2, w3] = bend.weights;
@@ -87,14 +87,14 @@ pub(super) mod tests {
             let (points, velocities) = state(&noise);
             let bend = hinge();
             let moduli = Moduli { bending: 1.0, ..Moduli::default() };
-            let forces = Bent::new(&bend, points).forces(&bend, &moduli, &Bent::new(&bend, velocities));
+            let forces = BendElement::new(&bend, points).forces(&bend, &moduli, &BendElement::new(&bend, velocities));
             let size: f32 = forces.iter().map(|force| force.length()).sum();
             for i in 0..4 {
                 for axis in [Vec3A::X, Vec3A::Y, Vec3A::Z] {
                     let energy = |way: f32| {
                         let mut points = points;
                         points[i] += axis * way;
-                        Bent::new(&bend, points).energy(&bend)
+                        BendElement::new(&bend, points).energy(&bend)
                     };
                     let slope = (energy(4e-3) - energy(-4e-3)) / 8e-3;
                     prop_assert!((slope + forces[i].dot(axis)).abs() < 0.01 * size, "{slope} {}", forces[i]);
@@ -104,7 +104,7 @@ pub(super) mod tests {
             prop_assert!(torque.length() < 1e-3 * size, "{torque}");
             // The same where everything is damped, and a turn of the whole isn't.
             let damped = Moduli { bend_damping: 0.5, ..moduli };
-            let with = |rates: [Vec3A; 4]| Bent::new(&bend, points).forces(&bend, &damped, &Bent::new(&bend, rates));
+            let with = |rates: [Vec3A; 4]| BendElement::new(&bend, points).forces(&bend, &damped, &BendElement::new(&bend, rates));
             let more = with(velocities);
             let torque: Vec3A = points.iter().zip(&more).map(|(p, force)| p.cross(*force)).sum();
             prop_assert!(torque.length() < 1e-3 * more.iter().map(|force| force.length()).sum::<f32>(), "{torque}");
@@ -121,7 +121,7 @@ pub(super) mod tests {
     fn nothing_is_infinite_where_points_fall_together() {
         let moduli = Moduli { bending: 1e9, bend_damping: 1.0, ..Moduli::default() };
         for points in [[Vec3A::ZERO; 4], [Vec3A::ZERO, Vec3A::X, Vec3A::X, Vec3A::X]] {
-            let bent = Bent::new(&hinge(), points);
+            let bent = BendElement::new(&hinge(), points);
             assert!(bent.energy(&hinge()).is_finite());
             assert!(bent.forces(&hinge(), &moduli, &bent).iter().all(|force| force.is_finite()));
         }

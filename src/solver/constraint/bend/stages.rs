@@ -62,7 +62,7 @@ impl Stages {
 
 /// Buffers for stages, for each particle four numbers as in the beads.
 #[derive(Clone, Debug, Default)]
-pub struct Ways {
+pub struct ChebyshevBuffers {
     /// Where it was before the first stage, m.
     start: Vec<[f32; 4]>,
     /// The way from there after the stage before, m.
@@ -73,7 +73,7 @@ pub struct Ways {
     pub pull: Vec<[f32; 4]>,
 }
 
-impl Ways {
+impl ChebyshevBuffers {
     pub fn begin(&mut self, now: &[[f32; 4]]) {
         self.start.clear();
         self.start.extend_from_slice(now);
@@ -106,7 +106,7 @@ mod tests {
 
     /// What is left of a motion whose squared frequency times h² is `rate`.
     fn left(stages: Stages, rate: f32) -> f32 {
-        let mut ways = Ways::default();
+        let mut ways = ChebyshevBuffers::default();
         let mut now = [[0.0, 0.0, 0.0, 2.0]];
         let begin = 1.0;
         now[0][0] = begin;
@@ -114,7 +114,7 @@ mod tests {
         for shares in stages.shares() {
             // Half of the rate, as the inverse mass is two.
             ways.pull[0][0] += 0.5 * rate * now[0][0];
-            let level = crate::solver::Instructions::Baseline.level();
+            let level = crate::solver::SimdLevel::Baseline.level();
             fearless_simd::dispatch!(level, simd => ways.go_on(simd, &mut now, shares));
         }
         assert_eq!(now[0][3], 2.0);

@@ -6,9 +6,9 @@ use crate::solver::Body;
 
 /// A body with the cloth's own mass at its anchors.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Load {
+pub(super) struct CombinedBody {
     /// Number of anchors, and how far the farthest is from the body's centre of mass, m.
-    pub anchors: f32,
+    pub pin_motions: f32,
     pub reach: f32,
     /// Inverse mass of all, 1/kg.
     pub inverse_mass: f32,
@@ -20,7 +20,7 @@ pub(super) struct Load {
     pub part: Mat3A,
 }
 
-impl Load {
+impl CombinedBody {
     /// Of a body and `masses` (kg) at arms (m) from its centre of mass.
     pub fn new<I: Iterator<Item = (Vec3A, f32)>>(body: &Body, masses: impl Fn() -> I) -> Self {
         let (count, mass, moment) = masses().fold((0.0, 0.0, Vec3A::ZERO), |(count, sum, moment), (arm, mass)| {
@@ -33,7 +33,7 @@ impl Load {
         // (I + added)^-1, where only I^-1 is known and may have no inverse: I^-1 (1 + added I^-1)^-1.
         let part = (Mat3A::IDENTITY + added * body.inverse_inertia).inverse();
         let reach = masses().map(|(arm, _)| arm.length()).fold(0.0, f32::max);
-        Self { anchors: count, reach, inverse_mass, inverse_inertia: body.inverse_inertia * part, offset, part }
+        Self { pin_motions: count, reach, inverse_mass, inverse_inertia: body.inverse_inertia * part, offset, part }
     }
 
     /// The most that a push of 1 N s at `arm` (m) from the body's centre of mass gives it of velocity there, m/s.
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn a_push_gives_what_the_body_has_there() {
-        let load = Load::new(&ball(), || [].into_iter());
+        let load = CombinedBody::new(&ball(), || [].into_iter());
         assert_eq!(load.give(Vec3A::ZERO), 0.5);
         // Across the arm: 1 / M + r² / I.
         let across = 0.5 + 4.0 * 0.09;
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn two_of_a_mass_turn_about_their_middle() {
         let point = Body { inverse_inertia: Mat3A::from_diagonal(Vec3A::splat(1e6).into()), ..ball() };
-        let load = Load::new(&point, || [(Vec3A::X, 2.0)].into_iter());
+        let load = CombinedBody::new(&point, || [(Vec3A::X, 2.0)].into_iter());
         assert_eq!(load.inverse_mass, 0.25);
         assert_eq!(load.offset, Vec3A::X * 0.5);
         // 2 kg each half a metre away.
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn what_cannot_turn_does_not_turn_with_a_load() {
         let locked = Body { inverse_inertia: Mat3A::ZERO, ..ball() };
-        let load = Load::new(&locked, || [(Vec3A::X, 2.0)].into_iter());
+        let load = CombinedBody::new(&locked, || [(Vec3A::X, 2.0)].into_iter());
         assert_eq!(load.inverse_inertia, Mat3A::ZERO);
         assert!(load.part.is_finite());
     }

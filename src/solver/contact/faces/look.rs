@@ -3,12 +3,12 @@
 use bevy::math::{Isometry3d, Vec3A};
 use fearless_simd::prelude::*;
 
-use super::{FacesInSight, Known, lane_of, set_lane};
+use super::{MeshDistanceQuery, BlockCache, lane_of, set_lane};
 use crate::solver::{
     contact::{
         closest, inside,
         mesh::TriangleMesh,
-        surface::{Bounds, Places, Surface},
+        surface::{Bounds, BvhBounds, TriangleBvh},
     },
     lanes::Run,
     simd::{LANES, Lane, Vec3x8},
@@ -39,7 +39,7 @@ const WHOLE: f32 = (3 << 22) as f32;
 const FAR: f32 = 1e30;
 
 /// Boxes around the ways of triangles whose points go from one place to another.
-pub(super) fn follow(places: &mut Places, surface: &Surface, from: &[Vec3A], to: &[Vec3A]) {
+pub(super) fn follow(places: &mut BvhBounds, surface: &TriangleBvh, from: &[Vec3A], to: &[Vec3A]) {
     let bounds =
         |triangle: [u32; 3]| Bounds::around(triangle.into_iter().flat_map(|i| [from[i as usize], to[i as usize]]));
     places.follow(surface, bounds, None::<fn(_) -> _>);
@@ -47,12 +47,12 @@ pub(super) fn follow(places: &mut Places, surface: &Surface, from: &[Vec3A], to:
 
 /// The region that a particle stays in, in the frame of the mesh, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Region {
+struct ParticleBounds {
     centre: Vec3A,
     radius: f32,
 }
 
-impl Region {
+impl ParticleBounds {
     /// One of the grid that it lies in.
     fn rounded(self) -> Self {
         let centre = (self.centre / GRID + WHOLE - WHOLE) * GRID;
@@ -63,14 +63,14 @@ impl Region {
 
 /// What a block has looked for: the regions of those of its particles that are free, and how far around them, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Sought {
-    regions: [Option<Region>; LANES],
+pub(super) struct CacheKey {
+    regions: [Option<ParticleBounds>; LANES],
     distance: f32,
 }
 
 /// A ball that no face comes into, in the frame of the mesh.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Clear {
+pub(super) struct EmptyBall {
     centre: Vec3A,
     /// m
     radius: f32,
@@ -79,12 +79,12 @@ pub(super) struct Clear {
 }
 
 /// Boxes around the regions of all particles.
-struct Boxes<S: Simd> {
+struct BlockBounds<S: Simd> {
     low: Vec3x8<S>,
     high: Vec3x8<S>,
 }
 
-impl<S: Simd> Boxes<S> {
+impl<S: Simd> BlockBounds<S> {
     /// Which of them meet another box, a bit each.
     #[inline(always)]
     fn meet(&self, Bounds { low: from, high: to }: &Bounds) -> u64 {
@@ -95,14 +95,14 @@ impl<S: Simd> Boxes<S> {
     }
 }
 
-impl FacesInSight<'_> {
+impl MeshDistanceQuery<'_> {
     /// Finds out which way the particles of the block are on, and what they may come to meet there.
     #[cold]
     #[inline(never)]
     pub(super) fn look_around<S: Simd>(&mut self, simd: S, run: &Run) {
         let is_free = run.inverse_mass[self.block].map(|w| w > 0.0);
         let regions = self.expect(run, is_free);
-        let sought = Sought { regions, distance: self.passage.distance };
+        let sought = CacheKey { regions, distance: self.passage.distance };
         let known = &mut self.blocks[self.block];
         let last = known.sought.replace(sought).filter(|last| !self.is_deformed && last.distance == sought.distance);
         let is_new: [bool; LANES] = core::array::from_fn(|i| last.is_none_or(|last| last.regions[i] != regions[i]));
@@ -131,7 +131,7 @@ impl FacesInSight<'_> {
     }
 
     /// Notes on which ways the particles are, and returns the regions of those that are free.
-    fn expect(&mut self, run: &Run, is_free: [bool; LANES]) -> [Option<Region>; LANES] {
+    fn expect(&mut self, run: &Run, is_free: [bool; LANES]) -> [Option<ParticleBounds>; LANES] {
         let (block, span, known) = (self.block, &self.span, &mut self.blocks[self.block]);
         let left = (1.0 - span.start) * self.dt;
         let [start, now, end] = [self.passage.start, self.passage.end, self.end].map(|pose: Isometry3d| pose.inverse());
@@ -156,16 +156,16 @@ impl FacesInSight<'_> {
                 let (from, half) = (lane_of(&known.start, i), lane_of(&known.way, i) * (0.5 * over));
                 let centre = from + half;
                 let place = now.transform_point(lane_of(&run.position[block], i));
-                Region { centre, radius: half.length().max(place.distance(centre)) + known.slack }.rounded()
+                ParticleBounds { centre, radius: half.length().max(place.distance(centre)) + known.slack }.rounded()
             })
         })
     }
 
     /// Finds the faces that come near to regions.
     #[inline(always)]
-    fn find<S: Simd>(&mut self, simd: S, regions: &[Option<Region>; LANES]) {
+    fn find<S: Simd>(&mut self, simd: S, regions: &[Option<ParticleBounds>; LANES]) {
         let Self { mesh: TriangleMesh { surface, .. }, points: [points, now], places, blocks, .. } = self;
-        let Known { span: known, found, .. } = &mut blocks[self.block];
+        let BlockCache { span: known, found, .. } = &mut blocks[self.block];
         let left = (known.end - known.start) / (self.span.end - self.span.start);
         // How far a face goes, of a mesh that moves within its frame.
         let is_deformed = self.is_deformed;
@@ -178,12 +178,12 @@ impl FacesInSight<'_> {
         let distance = self.passage.distance;
         let (mut low, mut high) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
         for (i, region) in regions.iter().enumerate() {
-            if let Some(Region { centre, radius }) = region {
+            if let Some(ParticleBounds { centre, radius }) = region {
                 set_lane(&mut low, i, *centre - *radius - distance);
                 set_lane(&mut high, i, *centre + *radius + distance);
             }
         }
-        let boxes = Boxes { low: Vec3x8::load(simd, &low), high: Vec3x8::load(simd, &high) };
+        let boxes = BlockBounds { low: Vec3x8::load(simd, &low), high: Vec3x8::load(simd, &high) };
         surface.for_each_near(
             places,
             #[inline(always)]
@@ -194,7 +194,7 @@ impl FacesInSight<'_> {
                 while lanes != 0 {
                     let i = lanes.trailing_zeros() as usize;
                     lanes &= lanes - 1;
-                    let Some(Region { centre, radius }) = regions[i] else { continue };
+                    let Some(ParticleBounds { centre, radius }) = regions[i] else { continue };
                     let corners = surface.triangles[face].map(|k| points[k as usize]);
                     let length = centre.distance(closest::place_on_triangle(centre, corners));
                     let way = way_of(face);
@@ -207,25 +207,25 @@ impl FacesInSight<'_> {
         );
         // What is so much farther than the nearest one never gets to be the nearest.
         for (found, region) in found.iter_mut().zip(regions) {
-            let Some(Region { radius, .. }) = region else { continue };
+            let Some(ParticleBounds { radius, .. }) = region else { continue };
             let least = found.iter().map(|&(length, _)| length).fold(f32::INFINITY, f32::min);
             found.retain(|&(length, _)| length <= least + 2.0 * (radius + farthest));
         }
     }
 
     /// Finds the nearest face of particles that are deep inside of a closed mesh: those of a cloth that began there.
-    fn find_inside(&mut self, regions: &[Option<Region>; LANES]) {
+    fn find_inside(&mut self, regions: &[Option<ParticleBounds>; LANES]) {
         let Self { blocks, mesh, points: [points, _], places, .. } = self;
         if !mesh.is_closed {
             return;
         }
         let TriangleMesh { surface, .. } = mesh;
-        let Known { clear, found, .. } = &mut blocks[self.block];
+        let BlockCache { clear, found, .. } = &mut blocks[self.block];
         if self.is_deformed {
-            *clear = [Clear::default(); LANES];
+            *clear = [EmptyBall::default(); LANES];
         }
         for (i, (found, region)) in found.iter_mut().zip(regions).enumerate() {
-            let Some(Region { centre, radius }) = *region else { continue };
+            let Some(ParticleBounds { centre, radius }) = *region else { continue };
             if !found.is_empty() || !places.whole().meets(&Bounds::around([centre])) {
                 continue;
             }
@@ -234,7 +234,7 @@ impl FacesInSight<'_> {
                 let farthest = CLEAR * (radius + self.passage.distance);
                 let nearest = inside::nearest(centre, farthest, surface, places, points);
                 let is_inside = inside::is_inside(centre, surface, places, points);
-                Clear { centre, radius: nearest.map_or(farthest, |(_, length)| length), is_inside }
+                EmptyBall { centre, radius: nearest.map_or(farthest, |(_, length)| length), is_inside }
             });
             if clear[i].is_inside {
                 let nearest = inside::nearest(centre, f32::INFINITY, surface, places, points);
@@ -245,7 +245,7 @@ impl FacesInSight<'_> {
 
     /// Keeps what has been found, side by side.
     fn know(&mut self) {
-        let Known { found, faces, beyond, .. } = &mut self.blocks[self.block];
+        let BlockCache { found, faces, beyond, .. } = &mut self.blocks[self.block];
         let most = found.iter().map(Vec::len).max().unwrap_or(0);
         *beyond = Lane::default();
         for (beyond, _) in beyond.iter_mut().zip(&*found).filter(|(_, found)| found.is_empty()) {

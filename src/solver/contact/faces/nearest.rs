@@ -2,9 +2,9 @@
 
 use fearless_simd::{f32x8, prelude::*};
 
-use super::Known;
+use super::BlockCache;
 use crate::solver::{
-    contact::{number::Number, solid::Seen},
+    contact::{number::Number, solid::SignedDistance},
     lanes::Block,
     simd::{Vec3Wide, Vec3x8, lane},
 };
@@ -16,8 +16,8 @@ const SAME: f32 = 1e-5;
 const SHORTEST: f32 = 1e-18;
 
 /// The nearest place of the faces that each particle of a block knows.
-pub(super) struct Nearest<S: Simd> {
-    pub seen: Seen<f32x8<S>>,
+pub(super) struct NearestPoint<S: Simd> {
+    pub sample: SignedDistance<f32x8<S>>,
     /// Weights of the face's corners there.
     weights: Vec3x8<S>,
     /// Number of that face.
@@ -30,9 +30,9 @@ pub(super) fn nearest<S: Simd>(
     simd: S,
     place: Vec3x8<S>,
     faces: &[[Block; 3]],
-    known: &Known,
+    known: &BlockCache,
     is_closed: bool,
-) -> Nearest<S> {
+) -> NearestPoint<S> {
     let zero = f32x8::splat(simd, 0.0);
     let nothing = Vec3x8::splat(simd, [0.0; 3]);
     let mut squared = f32x8::splat(simd, f32::MAX);
@@ -67,10 +67,10 @@ pub(super) fn nearest<S: Simd>(
         false => (length, direction),
     };
     let distance = distance + lane(simd, &known.beyond);
-    Nearest { seen: Seen { distance, normal }, weights, number }
+    NearestPoint { sample: SignedDistance { distance, normal }, weights, number }
 }
 
-impl<S: Simd> Nearest<S> {
+impl<S: Simd> NearestPoint<S> {
     /// How far the nearest places have come within the substep, in the frame of the mesh, m.
     #[inline(always)]
     pub fn way_from(&self, simd: S, then: &[[Block; 3]], now: &[[Block; 3]]) -> Vec3x8<S> {

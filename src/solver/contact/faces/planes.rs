@@ -2,9 +2,9 @@
 
 use fearless_simd::{f32x8, prelude::*};
 
-use super::{FacesInSight, Known};
+use super::{MeshDistanceQuery, BlockCache};
 use crate::solver::{
-    contact::solid::Seen,
+    contact::solid::SignedDistance,
     lanes::Block,
     simd::{Lane, Vec3x8, lane},
 };
@@ -30,13 +30,13 @@ pub(super) struct Plane {
     offset: Lane,
 }
 
-impl FacesInSight<'_> {
+impl MeshDistanceQuery<'_> {
     /// Finds out how the faces are to each other: whether the surface is the highest of their planes, or the lowest.
     #[inline(always)]
     pub(super) fn survey<S: Simd>(&mut self, simd: S) {
         let is_closed = self.mesh.is_closed;
         let has_border = self.has_border();
-        let Known { now, planes, side, passes, beyond, .. } = &mut self.blocks[self.block];
+        let BlockCache { now, planes, side, passes, beyond, .. } = &mut self.blocks[self.block];
         *passes = PASSES;
         planes.clear();
         if self.is_deformed || has_border || now.len() > MOST {
@@ -99,7 +99,7 @@ fn heights<S: Simd>(upward: Vec3x8<S>, [a, b, c]: [Vec3x8<S>; 3]) -> (f32x8<S>, 
 
 /// The highest of the planes above or below places.
 #[inline(always)]
-pub(super) fn highest<S: Simd>(simd: S, place: Vec3x8<S>, known: &Known, is_closed: bool) -> Seen<f32x8<S>> {
+pub(super) fn highest<S: Simd>(simd: S, place: Vec3x8<S>, known: &BlockCache, is_closed: bool) -> SignedDistance<f32x8<S>> {
     let mut height = f32x8::splat(simd, f32::MIN);
     let mut normal = Vec3x8::splat(simd, [0.0; 3]);
     for plane in &known.planes {
@@ -113,5 +113,5 @@ pub(super) fn highest<S: Simd>(simd: S, place: Vec3x8<S>, known: &Known, is_clos
         true => lane(simd, &known.side),
         false => f32x8::splat(simd, 1.0).copysign(height),
     };
-    Seen { distance: height * side, normal: normal * side }
+    SignedDistance { distance: height * side, normal: normal * side }
 }

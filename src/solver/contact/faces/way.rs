@@ -5,10 +5,10 @@
 
 use bevy::math::Vec3A;
 
-use super::FacesInSight;
+use super::MeshDistanceQuery;
 use crate::solver::contact::{
     closest,
-    sweep::{Correction, Passage},
+    sweep::{Correction, ObstacleSweep},
 };
 
 /// How far beyond its edges a face is gone through all the same, as a share of the distance that particles keep: nothing slips
@@ -17,14 +17,14 @@ const SEAM: f32 = 0.1;
 
 /// A face when a substep begins and now, in the frame of its mesh.
 #[derive(Clone, Copy)]
-struct Face {
+struct MovingFace {
     then: [Vec3A; 3],
     now: [Vec3A; 3],
 }
 
 /// A particle at a face.
 #[derive(Clone, Copy)]
-struct At {
+struct ParticleAtFace {
     weights: Vec3A,
     /// Unit vector from the face to the particle, or to where the particle belongs.
     normal: Vec3A,
@@ -41,7 +41,7 @@ fn weighted(weights: Vec3A, [a, b, c]: [Vec3A; 3]) -> Vec3A {
     a * weights.x + b * weights.y + c * weights.z
 }
 
-impl Face {
+impl MovingFace {
     /// The share of a particle's way from `before` to `place` at which it goes through the face, or by it within `tolerance`
     /// (m), and on which side it was: 1 in front, -1 behind.
     fn passed(&self, [before, place]: [Vec3A; 2], tolerance: f32) -> Option<(f32, f32)> {
@@ -59,27 +59,27 @@ impl Face {
 }
 
 /// How a place is to a triangle.
-fn at(place: Vec3A, corners: [Vec3A; 3], is_closed: bool) -> At {
+fn at(place: Vec3A, corners: [Vec3A; 3], is_closed: bool) -> ParticleAtFace {
     let weights = closest::on_triangle(place, corners);
     let between = place - weighted(weights, corners);
     let outward = normal(corners);
     let (direction, length) = between.normalize_and_length();
     if length == 0.0 {
-        return At { weights, normal: outward.normalize_or(Vec3A::Y), gap: 0.0 };
+        return ParticleAtFace { weights, normal: outward.normalize_or(Vec3A::Y), gap: 0.0 };
     }
     let is_behind = is_closed && outward.dot(between) < 0.0;
     if is_behind {
-        At { weights, normal: -direction, gap: -length }
+        ParticleAtFace { weights, normal: -direction, gap: -length }
     } else {
-        At { weights, normal: direction, gap: length }
+        ParticleAtFace { weights, normal: direction, gap: length }
     }
 }
 
 /// What brings the particle in lane `i` back that went from `previous` to `position`, if it has to.
 pub(super) fn correction(
-    sight: &FacesInSight,
+    sight: &MeshDistanceQuery,
     i: usize,
-    passage: &Passage,
+    passage: &ObstacleSweep,
     position: Vec3A,
     previous: Vec3A,
 ) -> Option<Correction> {
@@ -92,9 +92,9 @@ pub(super) fn correction(
     let before = passage.start.inverse().transform_point(previous);
     let [then, now] = sight.points;
     let faces = || {
-        known.faces.iter().map(|faces| Face { then: sight.corners(then, faces[i]), now: sight.corners(now, faces[i]) })
+        known.faces.iter().map(|faces| MovingFace { then: sight.corners(then, faces[i]), now: sight.corners(now, faces[i]) })
     };
-    let mut first: Option<(f32, f32, Face)> = None;
+    let mut first: Option<(f32, f32, MovingFace)> = None;
     for face in faces() {
         // Out of what is closed, particles may go.
         if let Some((share, side)) = face.passed([before, place], SEAM * passage.distance)
@@ -109,7 +109,7 @@ pub(super) fn correction(
             let [outward, was] = [face.now, face.then].map(|corners| normal(corners).normalize_or_zero() * side);
             let weights = closest::on_triangle(place, face.now);
             let gap = outward.dot(place - face.now[0]);
-            (At { weights, normal: outward, gap }, was.dot(before - face.then[0]), face)
+            (ParticleAtFace { weights, normal: outward, gap }, was.dot(before - face.then[0]), face)
         }
         None => {
             let (now, face) = nearest(faces(), place, is_closed)?;
@@ -132,8 +132,8 @@ pub(super) fn correction(
 }
 
 /// The face that a place is nearest to, and how.
-fn nearest(faces: impl Iterator<Item = Face>, place: Vec3A, is_closed: bool) -> Option<(At, Face)> {
-    let mut nearest: Option<(At, f32, Face)> = None;
+fn nearest(faces: impl Iterator<Item = MovingFace>, place: Vec3A, is_closed: bool) -> Option<(ParticleAtFace, MovingFace)> {
+    let mut nearest: Option<(ParticleAtFace, f32, MovingFace)> = None;
     for face in faces {
         let at = at(place, face.now, is_closed);
         // Of faces that share the nearest place, the one that looks towards the particle knows the side that it is on.

@@ -2,13 +2,13 @@
 
 use bevy::math::{Vec3A, ops};
 
-use super::{Drawing, RIM};
+use super::{OutlineBuilder, RIM};
 use crate::solver::contact::solid::Ellipsoid;
 
 /// What is less wide than this, in lengths of its shortest half, is a ball, or as thin one way as the other.
 const NARROW: f32 = 0.01;
 
-impl Drawing {
+impl OutlineBuilder {
     /// The largest balls that fit in at its rim, and all that lies between each and the next.
     ///
     /// Those that touch the surface on both sides have their centres on an elliptic disc. Its border is where they touch it

@@ -3,14 +3,14 @@
 use bevy::math::Vec3A;
 use fearless_simd::{f32x8, prelude::*};
 
-use super::{super::sweep::Correction, Bodies, Touching};
+use super::{super::sweep::Correction, Bodies, Contacts8};
 use crate::solver::simd::{Lane, Vec3x8};
 
 /// Below this length (m) a slide has no direction and rests.
 const SHORTEST: f32 = 1e-12;
 
 /// How an obstacle holds against particles.
-pub(super) trait Hold {
+pub(super) trait Response {
     /// Whether particles move it.
     const MOVES: bool;
 
@@ -18,7 +18,7 @@ pub(super) trait Hold {
     /// without gaining speed from it.
     fn resolve<S: Simd>(
         simd: S,
-        touching: &Touching<S>,
+        touching: &Contacts8<S>,
         friction: f32,
         bodies: &mut Bodies,
         obstacle: usize,
@@ -26,23 +26,23 @@ pub(super) trait Hold {
 }
 
 /// One that nothing moves.
-pub(super) struct Still;
+pub(super) struct Kinematic;
 
 /// A body.
-pub(super) struct Movable;
+pub(super) struct Dynamic;
 
-impl Hold for Still {
+impl Response for Kinematic {
     const MOVES: bool = false;
 
     #[inline(always)]
     fn resolve<S: Simd>(
         _: S,
-        touching: &Touching<S>,
+        touching: &Contacts8<S>,
         friction: f32,
         _: &mut Bodies,
         _: usize,
     ) -> (Vec3x8<S>, Vec3x8<S>) {
-        let Touching { place, before, touches, normal, gained, parted, held_back, slide, .. } = *touching;
+        let Contacts8 { place, before, touches, normal, gained, parted, held_back, slide, .. } = *touching;
         let (squared, hold) = (slide.dot(slide), gained * friction);
         let slides = squared.simd_gt(hold * hold);
         let mut held = slide;
@@ -57,7 +57,7 @@ impl Hold for Still {
     }
 }
 
-impl Hold for Movable {
+impl Response for Dynamic {
     const MOVES: bool = true;
 
     /// All eight push at once. Each sees a body of its share of the mass, so that together they don't push it too far
@@ -65,12 +65,12 @@ impl Hold for Movable {
     #[inline(always)]
     fn resolve<S: Simd>(
         simd: S,
-        touching: &Touching<S>,
+        touching: &Contacts8<S>,
         friction: f32,
         bodies: &mut Bodies,
         obstacle: usize,
     ) -> (Vec3x8<S>, Vec3x8<S>) {
-        let Touching { place, before, inverse_mass, touches, normal, gained, parted, held_back, slide, .. } = *touching;
+        let Contacts8 { place, before, inverse_mass, touches, normal, gained, parted, held_back, slide, .. } = *touching;
         let Some(body) = bodies.get(obstacle) else { return (place, before) };
         let zero = f32x8::splat(simd, 0.0);
         let count = touches.to_bitmask().count_ones() as f32;

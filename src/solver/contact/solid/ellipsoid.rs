@@ -14,7 +14,7 @@
 
 use bevy::{math::Vec3, prelude::Reflect};
 
-use super::field::{Field, Seen};
+use super::field::{SignedDistanceField, SignedDistance};
 use crate::solver::{contact::number::Number, simd::Vec3Wide};
 
 /// A ball that is drawn out or flattened along X, Y and Z: an egg, a cushion, a head.
@@ -60,7 +60,7 @@ impl Ellipsoid {
     }
 }
 
-impl Field for Ellipsoid {
+impl SignedDistanceField for Ellipsoid {
     /// Newton's method on 1 / sqrt(G), which is concave, and nearly a straight line in s: from below the root it comes nearer
     /// from below always (Moré and Sorensen, "Computing a trust region step", 1983). A lane that is near enough stays as it is,
     /// so the bits are the same whatever the others do.
@@ -68,7 +68,7 @@ impl Field for Ellipsoid {
     /// The distance is that of the plane with the normal which is found that touches the surface. None is farther away than the
     /// surface, so no error makes the distance greater than it is.
     #[inline(always)]
-    fn seen<N: Number>(&self, point: Vec3Wide<N>) -> Seen<N> {
+    fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let some = point.x;
         let (one, middle) = (some.like(1.0), some.like(NEAREST_TO_MIDDLE));
         // In lengths of the longest half.
@@ -98,7 +98,7 @@ impl Field for Ellipsoid {
         let reached = Vec3Wide { x: out.x * r.x, y: out.y * r.y, z: out.z * r.z };
         let scale = one / out.dot(out).root();
         let distance = (p.dot(out) - reached.dot(reached).root()) * scale;
-        Seen { distance: distance * size, normal: out * scale }
+        SignedDistance { distance: distance * size, normal: out * scale }
     }
 }
 
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
     use crate::solver::{
         Solid,
-        simd::{Instructions, Vec3x8},
+        simd::{SimdLevel, Vec3x8},
     };
 
     fn random(random: &mut fastrand::Rng, most: Vec3) -> Vec3 {
@@ -182,13 +182,13 @@ mod tests {
         for (ellipsoid, place) in cases() {
             let size = f64::from(ellipsoid.half_size.max_element().max(place.abs().max_element()));
             let expected = distance(ellipsoid, place);
-            let seen = Solid::Ellipsoid(ellipsoid).surface(place.into());
-            let error = (f64::from(seen.distance) - expected).abs() / size;
-            let foot = place - Vec3::from(seen.normal) * seen.distance;
+            let sample = Solid::Ellipsoid(ellipsoid).surface(place.into());
+            let error = (f64::from(sample.distance) - expected).abs() / size;
+            let foot = place - Vec3::from(sample.normal) * sample.distance;
             let off = distance(ellipsoid, foot).abs() / size;
             assert!(
                 error < 1e-5 && off < 1e-5,
-                "{ellipsoid:?} at {place}: {seen:?} for {expected}, its foot {off} off"
+                "{ellipsoid:?} at {place}: {sample:?} for {expected}, its foot {off} off"
             );
             worst = (error.max(worst.0), off.max(worst.1));
         }
@@ -199,12 +199,12 @@ mod tests {
     fn no_place_of_the_surface_is_nearer() {
         let mut rng = fastrand::Rng::with_seed(8);
         for (ellipsoid, place) in cases().into_iter().step_by(40) {
-            let seen = Solid::Ellipsoid(ellipsoid).surface(place.into()).distance.abs();
+            let sample = Solid::Ellipsoid(ellipsoid).surface(place.into()).distance.abs();
             let places = (0..500).map(|_| random(&mut rng, Vec3::ONE).normalize_or(Vec3::X) * ellipsoid.half_size);
             let nearest = places.map(|on_surface| on_surface.distance(place)).fold(f32::MAX, f32::min);
             assert!(
-                nearest > seen - 1e-5 * (1.0 + place.length()),
-                "{ellipsoid:?} at {place}: {nearest} m, not {seen}"
+                nearest > sample - 1e-5 * (1.0 + place.length()),
+                "{ellipsoid:?} at {place}: {nearest} m, not {sample}"
             );
         }
     }
@@ -215,13 +215,13 @@ mod tests {
             let ellipsoid = cases[0].0;
             let block = [0, 1, 2].map(|axis| core::array::from_fn(|i| cases[i].1[axis]));
             let (mut distance, mut normal) = ([0.0; 8], [[0.0; 8]; 3]);
-            dispatch!(Instructions::Best.level(), simd => {
-                let seen = ellipsoid.seen(Vec3x8::load(simd, &block));
-                distance = seen.distance.into();
-                seen.normal.store(&mut normal);
+            dispatch!(SimdLevel::Best.level(), simd => {
+                let sample = ellipsoid.sample(Vec3x8::load(simd, &block));
+                distance = sample.distance.into();
+                sample.normal.store(&mut normal);
             });
             for (i, (_, place)) in cases.iter().enumerate() {
-                let one = ellipsoid.seen(Vec3Wide::from(Vec3A::from(*place)));
+                let one = ellipsoid.sample(Vec3Wide::from(Vec3A::from(*place)));
                 let bits = |numbers: [f32; 4]| numbers.map(f32::to_bits);
                 let eight = [distance[i], normal[0][i], normal[1][i], normal[2][i]];
                 assert_eq!(bits(eight), bits([one.distance, one.normal.x, one.normal.y, one.normal.z]), "{place}");
@@ -235,9 +235,9 @@ mod tests {
         for (place, expected) in
             [(Vec3A::Y, 1.0), (Vec3A::new(0.2, -0.3, 0.1), 0.3), (Vec3A::X, 0.5), (Vec3A::ZERO, 0.0)]
         {
-            let seen = disc.surface(place);
-            assert!((seen.distance - expected).abs() < 1e-5, "{place}: {seen:?}");
-            assert!(seen.normal.is_normalized(), "{place}: {seen:?}");
+            let sample = disc.surface(place);
+            assert!((sample.distance - expected).abs() < 1e-5, "{place}: {sample:?}");
+            assert!(sample.normal.is_normalized(), "{place}: {sample:?}");
         }
     }
 }

@@ -16,7 +16,7 @@ const SHORTEST: f32 = 1e-18;
 
 /// Surfaces as they are seen from points.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver::contact) struct Seen<N> {
+pub(in crate::solver::contact) struct SignedDistance<N> {
     /// Distance, m; negative inside.
     pub distance: N,
     /// Outward unit normal.
@@ -24,30 +24,30 @@ pub(in crate::solver::contact) struct Seen<N> {
 }
 
 /// A solid that is seen from points in its own frame (m).
-pub(in crate::solver::contact) trait Field: Copy {
-    fn seen<N: Number>(&self, point: Vec3Wide<N>) -> Seen<N>;
+pub(in crate::solver::contact) trait SignedDistanceField: Copy {
+    fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N>;
 }
 
-impl Field for Sphere {
+impl SignedDistanceField for Sphere {
     #[inline(always)]
-    fn seen<N: Number>(&self, point: Vec3Wide<N>) -> Seen<N> {
+    fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         ball(point, point.x.like(self.radius))
     }
 }
 
 /// The centre is as far from all sides: any direction will do.
 #[inline(always)]
-fn ball<N: Number>(point: Vec3Wide<N>, radius: N) -> Seen<N> {
+fn ball<N: Number>(point: Vec3Wide<N>, radius: N) -> SignedDistance<N> {
     let length = point.dot(point).root();
     let scale = point.x.like(1.0) / length;
     let (zero, one) = (point.x.like(0.0), point.x.like(1.0));
     let is_long = zero.like(SHORTEST).is_below(length);
-    Seen { distance: length - radius, normal: (point * scale).if_so(is_long, Vec3Wide { x: zero, y: one, z: zero }) }
+    SignedDistance { distance: length - radius, normal: (point * scale).if_so(is_long, Vec3Wide { x: zero, y: one, z: zero }) }
 }
 
-impl Field for Cuboid {
+impl SignedDistanceField for Cuboid {
     #[inline(always)]
-    fn seen<N: Number>(&self, point: Vec3Wide<N>) -> Seen<N> {
+    fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let (half, zero) = (self.half_size, point.x.like(0.0));
         let (x, y, z) = (point.x.size() - half.x, point.y.size() - half.y, point.z.size() - half.z);
         let outside = Vec3Wide { x: x.at_least(zero), y: y.at_least(zero), z: z.at_least(zero) };
@@ -60,7 +60,7 @@ impl Field for Cuboid {
         let axis =
             Vec3Wide { x: zero.if_so(is_y, one), y: zero.if_so(is_z, one.if_so(is_y, zero)), z: one.if_so(is_z, zero) };
         let normal = (outside * (one / length)).if_so(is_outside, axis);
-        Seen {
+        SignedDistance {
             distance: length.if_so(is_outside, depth),
             normal: Vec3Wide {
                 x: (-normal.x).if_so(point.x.is_below(zero), normal.x),
@@ -71,19 +71,19 @@ impl Field for Cuboid {
     }
 }
 
-impl Field for Capsule3d {
+impl SignedDistanceField for Capsule3d {
     #[inline(always)]
-    fn seen<N: Number>(&self, point: Vec3Wide<N>) -> Seen<N> {
+    fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let end = point.y.like(self.half_length);
         let on_axis = point.y.at_least(-end).at_most(end);
         ball(Vec3Wide { y: point.y - on_axis, ..point }, end.like(self.radius))
     }
 }
 
-impl Field for TaperedCapsule {
+impl SignedDistanceField for TaperedCapsule {
     /// Where the cone that touches both balls does so, the side of it is nearest; above and below, a ball is.
     #[inline(always)]
-    fn seen<N: Number>(&self, point: Vec3Wide<N>) -> Seen<N> {
+    fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let Self { radius_top, radius_bottom, half_length } = *self;
         let some = point.x;
         // Sine of the angle between the cone's side and the axis.
@@ -105,14 +105,14 @@ impl Field for TaperedCapsule {
         );
         let ends = ball(Vec3Wide { y: point.y - end, ..point }, radius);
         let distance = from_axis * cosine + height * sine - radius_bottom;
-        let side = Seen { distance, normal: outward(across, some.like(cosine), some.like(sine)) };
+        let side = SignedDistance { distance, normal: outward(across, some.like(cosine), some.like(sine)) };
         side.if_so(is_side & !is_low, ends)
     }
 }
 
-impl Field for Cylinder {
+impl SignedDistanceField for Cylinder {
     #[inline(always)]
-    fn seen<N: Number>(&self, point: Vec3Wide<N>) -> Seen<N> {
+    fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let (across, from_axis) = axial(point);
         let (zero, one) = (point.x.like(0.0), point.x.like(1.0));
         let (side, end) = (from_axis - self.radius, point.y.size() - self.half_height);
@@ -125,13 +125,13 @@ impl Field for Cylinder {
         let scale = one / length;
         let (out, up) = ((beside * scale).if_so(is_corner, out), (above * scale).if_so(is_corner, up));
         let up = (-up).if_so(point.y.is_below(zero), up);
-        Seen { distance: length.if_so(is_corner, side.at_least(end)), normal: outward(across, out, up) }
+        SignedDistance { distance: length.if_so(is_corner, side.at_least(end)), normal: outward(across, out, up) }
     }
 }
 
-impl Field for Cone {
+impl SignedDistanceField for Cone {
     #[inline(always)]
-    fn seen<N: Number>(&self, point: Vec3Wide<N>) -> Seen<N> {
+    fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let some = point.x;
         let zero = some.like(0.0);
         let (across, from_axis) = axial(point);
@@ -160,24 +160,24 @@ impl Field for Cone {
         let has_direction = !is_inside & some.like(SHORTEST).is_below(length);
         let (out, up) = ((x * scale).if_so(has_direction, flat_x), (y * scale).if_so(has_direction, flat_y));
         let depth = beyond_side.at_least(beyond_base);
-        Seen { distance: depth.if_so(is_inside, length), normal: outward(across, out, up) }
+        SignedDistance { distance: depth.if_so(is_inside, length), normal: outward(across, out, up) }
     }
 }
 
-impl Field for InfinitePlane3d {
+impl SignedDistanceField for InfinitePlane3d {
     #[inline(always)]
-    fn seen<N: Number>(&self, point: Vec3Wide<N>) -> Seen<N> {
+    fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let normal: Vec3A = Vec3::from(self.normal).into();
         let some = point.x;
         let normal = Vec3Wide { x: some.like(normal.x), y: some.like(normal.y), z: some.like(normal.z) };
-        Seen { distance: normal.dot(point), normal }
+        SignedDistance { distance: normal.dot(point), normal }
     }
 }
 
-impl<N: Number> Seen<N> {
+impl<N: Number> SignedDistance<N> {
     /// `self` where that is so, else `other`.
     #[inline(always)]
-    fn if_so(self, so: N::Truth, other: Self) -> Self {
+    fn if_so(self, so: N::Mask, other: Self) -> Self {
         Self { distance: self.distance.if_so(so, other.distance), normal: self.normal.if_so(so, other.normal) }
     }
 }

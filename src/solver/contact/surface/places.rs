@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3A;
 
-use super::Surface;
+use super::TriangleBvh;
 
 /// A box along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,7 +92,7 @@ fn facing(normal: Vec3A) -> u32 {
 
 /// Where the triangles of a surface are, and its patches.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Places {
+pub struct BvhBounds {
     /// Box around each triangle.
     pub of_triangles: Vec<Bounds>,
     /// Box around each node; of the first, which isn't used, nothing.
@@ -101,12 +101,12 @@ pub struct Places {
     pub facing: Vec<u32>,
 }
 
-impl Places {
+impl BvhBounds {
     /// Follows the surface, whose triangles are in `bounds` of their number. `corners` tells where a triangle's corners
     /// are, if it matters which way patches face.
     pub fn follow(
         &mut self,
-        surface: &Surface,
+        surface: &TriangleBvh,
         bounds: impl Fn([u32; 3]) -> Bounds,
         corners: Option<impl Fn([u32; 3]) -> [Vec3A; 3]>,
     ) {

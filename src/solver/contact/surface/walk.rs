@@ -1,20 +1,20 @@
 //! Ways down the trees of surfaces.
 
-use super::{Bounds, Places, Surface};
+use super::{Bounds, BvhBounds, TriangleBvh};
 
 /// Pairs of leaves, and leaves, whose boxes meet.
 #[derive(Clone, Debug, Default)]
-pub struct Walk {
+pub struct Traversal {
     left: Vec<(u32, u32)>,
     folded: Vec<u32>,
 }
 
-impl Walk {
+impl Traversal {
     /// Visits the pairs of leaves of two surfaces whose boxes meet.
     pub fn between(
         &mut self,
-        (a, at): (&Surface, &Places),
-        (b, bt): (&Surface, &Places),
+        (a, at): (&TriangleBvh, &BvhBounds),
+        (b, bt): (&TriangleBvh, &BvhBounds),
         mut visit: impl FnMut(u32, u32),
     ) {
         self.left.clear();
@@ -25,8 +25,8 @@ impl Walk {
     /// Visits those of them that the other surface has something sharper than `sharpness` in.
     pub fn between_sharp(
         &mut self,
-        (a, at): (&Surface, &Places),
-        (b, bt): (&Surface, &Places),
+        (a, at): (&TriangleBvh, &BvhBounds),
+        (b, bt): (&TriangleBvh, &BvhBounds),
         sharpness: f32,
         mut visit: impl FnMut(u32, u32),
     ) {
@@ -37,7 +37,7 @@ impl Walk {
 
     /// Visits the pairs of leaves of one surface that may touch each other, and leaves that may touch themselves as a pair
     /// of the same. Patches that face one way are left out.
-    pub fn within(&mut self, surface: &Surface, places: &Places, mut visit: impl FnMut(u32, u32)) {
+    pub fn within(&mut self, surface: &TriangleBvh, places: &BvhBounds, mut visit: impl FnMut(u32, u32)) {
         self.folded.clear();
         self.folded.push(1);
         while let Some(node) = self.folded.pop() {
@@ -65,8 +65,8 @@ impl Walk {
     /// Visits the pairs of leaves below what is left whose boxes meet.
     fn down(
         &mut self,
-        (a, at): (&Surface, &Places),
-        (b, bt): (&Surface, &Places),
+        (a, at): (&TriangleBvh, &BvhBounds),
+        (b, bt): (&TriangleBvh, &BvhBounds),
         sharper_than: Option<f32>,
         visit: &mut impl FnMut(u32, u32),
     ) {
@@ -89,7 +89,7 @@ impl Walk {
     }
 }
 
-impl Surface {
+impl TriangleBvh {
     /// The leaf at the end of the way down that takes the second branch wherever `takes_second` of the numbers of both.
     pub fn leaf_by(&self, takes_second: impl Fn(usize, usize) -> bool) -> u32 {
         let mut node = 1;
@@ -102,7 +102,7 @@ impl Surface {
 
     /// Visits the triangles of the leaves whose boxes, and those of all patches that they are in, are near.
     #[inline(always)]
-    pub fn for_each_near(&self, places: &Places, is_near: impl Fn(&Bounds) -> bool, mut visit: impl FnMut(usize)) {
+    pub fn for_each_near(&self, places: &BvhBounds, is_near: impl Fn(&Bounds) -> bool, mut visit: impl FnMut(usize)) {
         // Down to the next leaf, then on to the next branch: without a list of what is left.
         let last = self.node_count() as u32;
         let mut node = 1;

@@ -1,27 +1,27 @@
 //! The search for pairs of cloths, and of one cloth with itself.
 
-use super::{Touch, meet};
+use super::{FeatureContacts, meet};
 use crate::solver::{
     SelfCollision,
     contact::{
-        search::{self, Reach, Side, Ways},
-        surface::Places,
+        search::{self, QueryMargin, ContactSide, Displacements},
+        surface::BvhBounds,
         tangle,
     },
     step::Running,
 };
 
-impl Touch {
+impl FeatureContacts {
     /// Looks for pairs between cloths, and between parts of one.
     pub(super) fn search_cloths(&mut self, cloths: &[Running]) {
-        self.places.resize_with(cloths.len().max(self.places.len()), Places::default);
+        self.places.resize_with(cloths.len().max(self.places.len()), BvhBounds::default);
         for (i, cloth) in cloths.iter().enumerate() {
             let particles = self.first[i] as usize..self.first[i + 1] as usize;
             let (start, way) = (&self.start[particles.clone()], &self.way[particles]);
             // With a ball against a robust cloth, the larger distance counts.
             let distance = cloth.self_distance(cloth.ctx.self_collision);
             let margin = 0.5 * distance + self.slack[i];
-            let ways = Ways { position: start, way };
+            let ways = Displacements { position: start, way };
             let corners = |triangle: [u32; 3]| triangle.map(|i| start[i as usize]);
             let bounds = |triangle| ways.bounds(triangle).grown(margin);
             self.places[i].follow(cloth.surface(), bounds, Some(corners));
@@ -43,10 +43,10 @@ impl Touch {
         let Self { first, start, way, places, walk, leaves, pairs, is_tangled, tangles, slack, .. } = self;
         let side = |i: usize| {
             let particles = first[i] as usize..first[i + 1] as usize;
-            Side {
+            ContactSide {
                 surface: cloths[i].surface(),
                 places: &places[i],
-                ways: Ways { position: &start[particles.clone()], way: &way[particles] },
+                ways: Displacements { position: &start[particles.clone()], way: &way[particles] },
                 first: first[i],
                 sharper_than: 0.0,
                 has_faces: true,
@@ -61,7 +61,7 @@ impl Touch {
         }
         // The more careful of the two ways.
         let mode = cloths[i].ctx.self_collision.max(cloths[j].ctx.self_collision);
-        let reach = Reach {
+        let reach = QueryMargin {
             distance: 0.5 * (cloths[i].self_distance(mode) + cloths[j].self_distance(mode)),
             slack: slack[i] + slack[j],
             friction: 0.5 * (cloths[i].ctx.self_friction + cloths[j].ctx.self_friction),

@@ -4,12 +4,12 @@ use core::ops::Range;
 
 use bevy::math::{Isometry3d, Vec3A};
 
-use super::{Touch, obstacle::Fixed};
+use super::{FeatureContacts, obstacle::ObstaclePoint};
 use crate::solver::{
     contact::{
         MeshShape, Shape,
-        body::Moved,
-        pair::{Given, OnBody},
+        body::MovedBody,
+        pair::{Impulse, BodyContact},
         sweep,
     },
     step::Running,
@@ -17,7 +17,7 @@ use crate::solver::{
 
 /// The way that a search has taken a body to be on.
 #[derive(Clone, Copy, Debug)]
-pub struct BodyWay {
+pub struct PredictedBodyMotion {
     /// Number of the cloth, and of the obstacle among those of that cloth.
     cloth: usize,
     obstacle: usize,
@@ -27,7 +27,7 @@ pub struct BodyWay {
     far: f32,
 }
 
-impl Touch {
+impl FeatureContacts {
     /// Brings the points of obstacles to where they are in the part `span` of the step.
     pub(super) fn lead_fixed(&mut self, cloths: &[Running], span: Range<f32>) {
         let count = self.start.len();
@@ -55,14 +55,14 @@ impl Touch {
             }
             let Some((_, far)) = it.ball() else { continue };
             let poses = bodies.poses_ahead(cloth.ctx, obstacle, self.searched.clone(), dt);
-            self.body_ways.push(BodyWay { cloth: number, obstacle, poses, far });
+            self.body_ways.push(PredictedBodyMotion { cloth: number, obstacle, poses, far });
         }
     }
 
     /// Whether a body was off its way when a substep began.
     pub(super) fn has_body_come_off(&self, cloths: &[Running], now: f32) -> bool {
         let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
-        self.body_ways.iter().any(|BodyWay { cloth, obstacle, poses: [from, to], far }| {
+        self.body_ways.iter().any(|PredictedBodyMotion { cloth, obstacle, poses: [from, to], far }| {
             let Some(body) = cloths[*cloth].scratch.bodies.get(*obstacle) else { return false };
             let translation = from.translation.lerp(to.translation, share);
             let expected = Isometry3d { translation, rotation: from.rotation.lerp(to.rotation, share) };
@@ -71,7 +71,7 @@ impl Touch {
     }
 
     /// Where a point of an obstacle is in the obstacle's own frame, at the moment `t` of the step.
-    fn local(&self, cloth: &Running, fixed: &Fixed, t: f32) -> Vec3A {
+    fn local(&self, cloth: &Running, fixed: &ObstaclePoint, t: f32) -> Vec3A {
         let point = fixed.point as usize;
         match &cloth.ctx.obstacles[fixed.obstacle as usize].shape {
             Shape::Solid(_) => self.at_obstacle.outline(fixed).points[point],
@@ -87,7 +87,7 @@ impl Touch {
             let mut pair = self.pairs[i];
             let is_first = pair.points[0] as usize >= self.start.len();
             let on = self.body_of(cloths, &pair.points, is_first, span.end);
-            let given = pair.solve(&mut self.points, most_parted, on.as_ref().map(Touched::on).as_ref());
+            let given = pair.solve(&mut self.points, most_parted, on.as_ref().map(TouchedBody::on).as_ref());
             self.pairs[i] = pair;
             touched += u32::from(given.is_some());
             push(cloths, on, given);
@@ -96,7 +96,7 @@ impl Touch {
     }
 
     /// The body that some points are of, at the moment `t` of the step, after what has moved it: they are brought there.
-    fn body_of(&mut self, cloths: &[Running], points: &[u32], is_first: bool, t: f32) -> Option<Touched> {
+    fn body_of(&mut self, cloths: &[Running], points: &[u32], is_first: bool, t: f32) -> Option<TouchedBody> {
         let count = self.start.len();
         let of_obstacle = points.iter().find(|&&point| point as usize >= count)?;
         let fixed = self.fixed[*of_obstacle as usize - count];
@@ -106,28 +106,28 @@ impl Touch {
             let local = self.local(cloth, &self.fixed[point - count], t);
             self.points.position[point] = body.end.transform_point(local) + cloth.offset;
         }
-        Some(Touched { fixed, body, centre: body.centre + cloth.offset, is_first })
+        Some(TouchedBody { fixed, body, centre: body.centre + cloth.offset, is_first })
     }
 }
 
 /// A body that something touches.
-struct Touched {
-    fixed: Fixed,
-    body: Moved,
+struct TouchedBody {
+    fixed: ObstaclePoint,
+    body: MovedBody,
     /// From the origin of the points, m.
     centre: Vec3A,
     is_first: bool,
 }
 
-impl Touched {
-    fn on(&self) -> OnBody<'_> {
-        OnBody { body: &self.body, centre: self.centre, is_first: self.is_first }
+impl TouchedBody {
+    fn on(&self) -> BodyContact<'_> {
+        BodyContact { body: &self.body, centre: self.centre, is_first: self.is_first }
     }
 }
 
 /// Gives a body what something that touched it gives to it.
-fn push(cloths: &mut [Running], on: Option<Touched>, given: Option<Given>) {
-    if let (Some(Given { linear, angular }), Some(Touched { fixed, .. })) = (given, on) {
+fn push(cloths: &mut [Running], on: Option<TouchedBody>, given: Option<Impulse>) {
+    if let (Some(Impulse { linear, angular }), Some(TouchedBody { fixed, .. })) = (given, on) {
         cloths[fixed.cloth as usize].scratch.bodies.push(fixed.obstacle as usize, linear, angular);
     }
 }

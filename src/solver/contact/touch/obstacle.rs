@@ -5,32 +5,32 @@ use core::ops::Range;
 use bevy::math::{Isometry3d, Vec3A};
 
 use super::{
-    outlines::{Outlines, distance_to, tightness},
+    outlines::{SharpFeatureCache, distance_to, tightness},
     sink,
-    target::{Deformed, Target},
+    target::{FaceStrain, ObstacleGeometry},
 };
 use crate::solver::{
     contact::{
         Shape, inside,
         mesh::MeshShape,
-        outline::Outline,
-        pair::{Features, Pair},
-        search::{self, Found, Reach, Side, Ways},
+        outline::SharpFeatures,
+        pair::{Features, FeatureContact},
+        search::{self, Candidate, QueryMargin, ContactSide, Displacements},
         solid::Solid,
-        surface::{Bounds, Places, Walk},
+        surface::{Bounds, BvhBounds, Traversal},
     },
     step::Running,
 };
 
 /// A cloth on its way.
-pub struct Approach<'a> {
+pub struct ClothMotion<'a> {
     pub cloth: &'a Running<'a>,
     /// Its number among those that are stepped together.
     pub number: usize,
     /// Number of its first particle, and of all particles.
     pub first: u32,
     pub total: usize,
-    pub ways: Ways<'a>,
+    pub ways: Displacements<'a>,
     /// By how much particles may come off their ways, m.
     pub slack: f32,
     /// The part of the step that the search is for.
@@ -39,7 +39,7 @@ pub struct Approach<'a> {
     pub dt: f32,
 }
 
-impl Approach<'_> {
+impl ClothMotion<'_> {
     /// Poses of obstacle `i` now, and when the search ends.
     fn poses(&self, i: usize) -> [Isometry3d; 2] {
         self.cloth.scratch.bodies.poses_ahead(self.cloth.ctx, i, self.span.clone(), self.dt)
@@ -53,7 +53,7 @@ impl Approach<'_> {
 
 /// A point of an obstacle.
 #[derive(Clone, Copy, Debug)]
-pub struct Fixed {
+pub struct ObstaclePoint {
     /// Number of the cloth, and of the obstacle among those of that cloth.
     pub cloth: u32,
     pub obstacle: u32,
@@ -62,24 +62,24 @@ pub struct Fixed {
 
 /// What it takes to search at one obstacle after the other.
 #[derive(Clone, Debug, Default)]
-pub struct AtObstacle {
+pub struct ObstacleSearch {
     /// The cloth in the obstacle's frame.
     position: Vec<Vec3A>,
     way: Vec<Vec3A>,
-    places: Places,
+    places: BvhBounds,
     leaves: Vec<(u32, u32)>,
-    found: Vec<Found>,
+    found: Vec<Candidate>,
     /// Whether each particle is inside of a closed mesh, of those that it matters of.
     is_inside: Vec<Option<bool>>,
     /// Number of each of the obstacle's points among all.
     number: Vec<u32>,
-    deformed: Deformed,
+    deformed: FaceStrain,
     /// Sharp corners and the triangles of the cloth that they have come through.
     pierced: Vec<(u32, usize)>,
-    outlines: Outlines,
+    outlines: SharpFeatureCache,
 }
 
-impl AtObstacle {
+impl ObstacleSearch {
     /// Whether triangles and edges of a cloth, number `number` of those that are stepped together, may meet anything that its
     /// particles don't.
     pub fn is_needed(&mut self, number: usize, cloth: &Running) -> bool {
@@ -97,23 +97,23 @@ impl AtObstacle {
     }
 
     /// The outline that a point is of.
-    pub fn outline(&self, fixed: &Fixed) -> &Outline {
+    pub fn outline(&self, fixed: &ObstaclePoint) -> &SharpFeatures {
         self.outlines.of(fixed.cloth as usize, fixed.obstacle as usize)
     }
 
     /// Adds what of a cloth and obstacle `i` of it may meet.
     pub fn search(
         &mut self,
-        at: &Approach,
+        at: &ClothMotion,
         i: usize,
-        walk: &mut Walk,
-        (fixed, pairs): (&mut Vec<Fixed>, &mut Vec<Pair>),
+        walk: &mut Traversal,
+        (fixed, pairs): (&mut Vec<ObstaclePoint>, &mut Vec<FeatureContact>),
     ) {
         let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
         let surface = cloth.surface();
         let distance = distance_to(obstacle, cloth.ctx);
         let Self { position, way, places, leaves, found, is_inside, number, deformed, outlines, pierced } = self;
-        let Some(target) = Target::of(obstacle, &at.span, deformed, || outlines.of(at.number, i)) else { return };
+        let Some(target) = ObstacleGeometry::of(obstacle, &at.span, deformed, || outlines.of(at.number, i)) else { return };
         // In the obstacle's own frame it stays, and the cloth's way is that past it.
         let (poses, slack) = (at.poses(i), at.slack(i));
         let reached = distance + slack;
@@ -121,20 +121,20 @@ impl AtObstacle {
         if !bounds.meets(&target.places.whole()) {
             return;
         }
-        let ways = Ways { position, way };
+        let ways = Displacements { position, way };
         places.follow(surface, |triangle| ways.bounds(triangle).grown(reached), None::<fn(_) -> _>);
-        let a = Side { surface, places, ways, first: at.first, sharper_than: 0.0, has_faces: true, radii: &[] };
-        let b = Side {
+        let a = ContactSide { surface, places, ways, first: at.first, sharper_than: 0.0, has_faces: true, radii: &[] };
+        let b = ContactSide {
             surface: target.surface,
             places: target.places,
-            ways: Ways { position: target.points, way: target.way.unwrap_or(&[]) },
+            ways: Displacements { position: target.points, way: target.way.unwrap_or(&[]) },
             first: 0,
             sharper_than: if target.is_of_mesh { sharpness(cloth) } else { 0.0 },
             has_faces: false,
             radii: target.radii,
         };
         let friction = cloth.ctx.material.friction * obstacle.friction;
-        let reach = Reach { distance, slack, friction, rest: None };
+        let reach = QueryMargin { distance, slack, friction, rest: None };
         found.clear();
         find_at_edges(&a, &b, &reach, (walk, leaves), found, pierced);
         is_inside.clear();
@@ -150,7 +150,7 @@ impl AtObstacle {
             let number = &mut number[point as usize];
             if *number == u32::MAX {
                 *number = (at.total + fixed.len()) as u32;
-                fixed.push(Fixed { cloth: at.number as u32, obstacle: i as u32, point });
+                fixed.push(ObstaclePoint { cloth: at.number as u32, obstacle: i as u32, point });
             }
             *number
         };
@@ -186,7 +186,7 @@ fn sharpness(cloth: &Running) -> f32 {
 }
 
 /// Takes the cloth's ways into the obstacle's frame, and returns the box around them.
-fn to_frame(at: &Approach, poses: [Isometry3d; 2], position: &mut Vec<Vec3A>, way: &mut Vec<Vec3A>) -> Bounds {
+fn to_frame(at: &ClothMotion, poses: [Isometry3d; 2], position: &mut Vec<Vec3A>, way: &mut Vec<Vec3A>) -> Bounds {
     let [now, end] = poses.map(|pose| pose.inverse());
     position.clear();
     way.clear();
@@ -203,11 +203,11 @@ fn to_frame(at: &Approach, poses: [Isometry3d; 2], position: &mut Vec<Vec3A>, wa
 
 /// Finds pairs of the cloth's faces and edges with what is sharp.
 fn find_at_edges(
-    a: &Side,
-    b: &Side,
-    reach: &Reach,
-    (walk, leaves): (&mut Walk, &mut Vec<(u32, u32)>),
-    found: &mut Vec<Found>,
+    a: &ContactSide,
+    b: &ContactSide,
+    reach: &QueryMargin,
+    (walk, leaves): (&mut Traversal, &mut Vec<(u32, u32)>),
+    found: &mut Vec<Candidate>,
     pierced: &mut Vec<(u32, usize)>,
 ) {
     leaves.clear();
@@ -235,7 +235,7 @@ fn find_at_edges(
 
 /// Radius (m) of an obstacle's feature that fits through a cell of the cloth, stretched as this is: no particle is in its way,
 /// and triangles alone catch it, however deep they are in it. Zero of what doesn't fit.
-fn thickness(pair: &Pair, radii: &[f32], position: &[Vec3A], first: u32) -> f32 {
+fn thickness(pair: &FeatureContact, radii: &[f32], position: &[Vec3A], first: u32) -> f32 {
     let [a, b, c, d] = pair.points;
     let radius = |point: u32| radii.get(point as usize).copied().unwrap_or(0.0);
     let place = |point: u32| position[(point - first) as usize];
@@ -250,8 +250,8 @@ fn thickness(pair: &Pair, radii: &[f32], position: &[Vec3A], first: u32) -> f32 
 }
 
 /// How deep the cloth's place of a pair is inside of a solid, m.
-fn depth_of(found: &Found, solid: &Solid, position: &[Vec3A], first: u32) -> f32 {
-    let Found { pair, nearest, is_first_of_a, .. } = found;
+fn depth_of(found: &Candidate, solid: &Solid, position: &[Vec3A], first: u32) -> f32 {
+    let Candidate { pair, nearest, is_first_of_a, .. } = found;
     let of_cloth = if *is_first_of_a { 1.0 } else { -1.0 };
     let weights = nearest.weights.map(|weight| (weight * of_cloth).max(0.0));
     let places = pair.points.into_iter().zip(weights).filter(|&(_, weight)| weight > 0.0);

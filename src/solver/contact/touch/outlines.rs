@@ -4,7 +4,7 @@ use crate::solver::{
     StepContext,
     contact::{
         Obstacle, faces,
-        outline::{Outline, Tightness},
+        outline::{SharpFeatures, FeatureTolerance},
         solid::Solid,
     },
 };
@@ -13,25 +13,25 @@ use super::sink;
 
 /// Outlines of the solids among each cloth's obstacles, with what they were drawn for.
 #[derive(Clone, Debug, Default)]
-pub struct Outlines {
-    drawn: Vec<Vec<Option<(Solid, Tightness, Outline)>>>,
+pub struct SharpFeatureCache {
+    drawn: Vec<Vec<Option<(Solid, FeatureTolerance, SharpFeatures)>>>,
     /// What others have.
-    nothing: Outline,
+    nothing: SharpFeatures,
 }
 
-impl Outlines {
+impl SharpFeatureCache {
     /// Draws that of obstacle `i` of a cloth, where it isn't drawn yet for what the cloth `needs`.
-    pub fn draw(&mut self, cloth: usize, i: usize, solid: &Solid, needs: Tightness) -> &Outline {
+    pub fn draw(&mut self, cloth: usize, i: usize, solid: &Solid, needs: FeatureTolerance) -> &SharpFeatures {
         let Self { drawn, .. } = self;
         drawn.resize_with(drawn.len().max(cloth + 1), Vec::new);
         let some = &mut drawn[cloth];
         some.resize_with(some.len().max(i + 1), || None);
         let known = some[i].take().filter(|(known, met, _)| known == solid && *met == needs);
-        &some[i].insert(known.unwrap_or_else(|| (*solid, needs, Outline::of(solid, needs)))).2
+        &some[i].insert(known.unwrap_or_else(|| (*solid, needs, SharpFeatures::of(solid, needs)))).2
     }
 
     /// That of obstacle `i` of a cloth: of one that hasn't been drawn, nothing.
-    pub fn of(&self, cloth: usize, i: usize) -> &Outline {
+    pub fn of(&self, cloth: usize, i: usize) -> &SharpFeatures {
         let outline = self.drawn.get(cloth).and_then(|some| some.get(i)?.as_ref());
         outline.map_or(&self.nothing, |(_, _, outline)| outline)
     }
@@ -43,6 +43,6 @@ pub fn distance_to(obstacle: &Obstacle, ctx: &StepContext) -> f32 {
 }
 
 /// How tightly a cloth, whose longest edge is of length `edge` (m), lies on an obstacle.
-pub fn tightness(obstacle: &Obstacle, edge: f32, ctx: &StepContext) -> Tightness {
-    Tightness { edge, distance: distance_to(obstacle, ctx), sink: sink(ctx) }
+pub fn tightness(obstacle: &Obstacle, edge: f32, ctx: &StepContext) -> FeatureTolerance {
+    FeatureTolerance { edge, distance: distance_to(obstacle, ctx), sink: sink(ctx) }
 }

@@ -4,10 +4,10 @@ use core::ops::Range;
 
 use bevy::math::Vec3A;
 
-use super::Touch;
-use crate::solver::{Instructions, Lanes, Scratch, contact::Shape, lanes, order::Order, step::Running};
+use super::FeatureContacts;
+use crate::solver::{SimdLevel, Lanes, Scratch, contact::Shape, lanes, order::Order, step::Running};
 
-impl Touch {
+impl FeatureContacts {
     /// Reads where all particles are, and where they were when the substep began.
     pub(super) fn take_places(&mut self, cloths: &[Running]) {
         self.first.clear();
@@ -22,7 +22,7 @@ impl Touch {
             let Lanes { order, position, previous, .. } = &cloth.scratch.lanes;
             for (values, of) in [(&mut self.points.position, position), (&mut self.points.previous, previous)] {
                 values.resize(count, Vec3A::ZERO);
-                of.store(*order, &mut values[particles.clone()], cloth.scratch.instructions);
+                of.store(*order, &mut values[particles.clone()], cloth.scratch.simd_level);
                 if cloth.offset != Vec3A::ZERO {
                     values[particles.clone()].iter_mut().for_each(|p| *p += cloth.offset);
                 }
@@ -48,20 +48,20 @@ impl Touch {
                 let now = &mut self.points.position[particles.clone()];
                 let before = &mut self.points.previous[particles.clone()];
                 keep_out(cloth, now, before, &span);
-                let Scratch { lanes: Lanes { order, previous, .. }, instructions, .. } = &mut *cloth.scratch;
-                put(before, cloth.offset, previous, *order, *instructions);
+                let Scratch { lanes: Lanes { order, previous, .. }, simd_level, .. } = &mut *cloth.scratch;
+                put(before, cloth.offset, previous, *order, *simd_level);
             }
-            let Scratch { lanes: Lanes { order, position, .. }, instructions, .. } = &mut *cloth.scratch;
-            put(&mut self.points.position[particles], cloth.offset, position, *order, *instructions);
+            let Scratch { lanes: Lanes { order, position, .. }, simd_level, .. } = &mut *cloth.scratch;
+            put(&mut self.points.position[particles], cloth.offset, position, *order, *simd_level);
         }
     }
 }
 
-fn put(places: &mut [Vec3A], offset: Vec3A, lanes: &mut lanes::Points, order: Order, instructions: Instructions) {
+fn put(places: &mut [Vec3A], offset: Vec3A, lanes: &mut lanes::Points, order: Order, simd_level: SimdLevel) {
     if offset != Vec3A::ZERO {
         places.iter_mut().for_each(|p| *p -= offset);
     }
-    lanes.load(order, places, instructions);
+    lanes.load(order, places, simd_level);
 }
 
 /// Takes particles that parted into a solid back to its surface, without a change of speed: those that were outside at the start

@@ -7,37 +7,37 @@ use bevy::math::Vec3A;
 use crate::solver::contact::{
     Obstacle, Shape,
     mesh::MeshShape,
-    outline::Outline,
-    search::Ways,
-    surface::{Places, Surface},
+    outline::SharpFeatures,
+    search::Displacements,
+    surface::{BvhBounds, TriangleBvh},
 };
 
 /// A mesh whose points move within its frame.
 #[derive(Clone, Debug, Default)]
-pub struct Deformed {
+pub struct FaceStrain {
     points: Vec<Vec3A>,
     way: Vec<Vec3A>,
-    places: Places,
+    places: BvhBounds,
 }
 
-impl Deformed {
+impl FaceStrain {
     /// Follows a mesh in the part `span` of a step.
-    fn follow(&mut self, surface: &Surface, from: &[Vec3A], to: &[Vec3A], span: &Range<f32>) {
+    fn follow(&mut self, surface: &TriangleBvh, from: &[Vec3A], to: &[Vec3A], span: &Range<f32>) {
         self.points.clear();
         self.points.extend(from.iter().zip(to).map(|(&p, &q)| p.lerp(q, span.start)));
         self.way.clear();
         self.way.extend(from.iter().zip(to).map(|(&p, &q)| (q - p) * (span.end - span.start)));
-        let ways = Ways { position: &self.points, way: &self.way };
+        let ways = Displacements { position: &self.points, way: &self.way };
         self.places.follow(surface, |triangle| ways.bounds(triangle), None::<fn(_) -> _>);
     }
 }
 
 /// An obstacle as the search sees it, in its own frame.
 #[derive(Clone, Copy)]
-pub struct Target<'a> {
+pub struct ObstacleGeometry<'a> {
     pub points: &'a [Vec3A],
-    pub surface: &'a Surface,
-    pub places: &'a Places,
+    pub surface: &'a TriangleBvh,
+    pub places: &'a BvhBounds,
     pub radii: &'a [f32],
     /// Whether it is the edges and corners of a mesh, and whether that encloses a volume.
     pub is_of_mesh: bool,
@@ -46,20 +46,20 @@ pub struct Target<'a> {
     pub way: Option<&'a [Vec3A]>,
 }
 
-impl<'a> Target<'a> {
+impl<'a> ObstacleGeometry<'a> {
     /// Those of an obstacle where it is when the part `span` of the step begins. None where nothing of it is sharp.
     pub fn of(
         obstacle: &'a Obstacle,
         span: &Range<f32>,
-        deformed: &'a mut Deformed,
-        outline: impl FnOnce() -> &'a Outline,
+        deformed: &'a mut FaceStrain,
+        outline: impl FnOnce() -> &'a SharpFeatures,
     ) -> Option<Self> {
         let of_mesh = |points, surface, places, is_closed, way| {
             Some(Self { points, surface, places, radii: &[], is_of_mesh: true, is_closed, way })
         };
         match &obstacle.shape {
             Shape::Solid(_) => {
-                let Outline { points, radii, surface, places } = outline();
+                let SharpFeatures { points, radii, surface, places } = outline();
                 let target = Self { points, surface, places, radii, is_of_mesh: false, is_closed: false, way: None };
                 (!points.is_empty()).then_some(target)
             }
@@ -68,7 +68,7 @@ impl<'a> Target<'a> {
             }
             Shape::Mesh(MeshShape { mesh, deformed: Some([from, to]) }) => {
                 deformed.follow(&mesh.surface, from, to, span);
-                let Deformed { points, way, places } = deformed;
+                let FaceStrain { points, way, places } = deformed;
                 of_mesh(points, &mesh.surface, places, mesh.is_closed, Some(way))
             }
         }

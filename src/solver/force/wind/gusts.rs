@@ -34,7 +34,7 @@ pub struct Gusts {
 ///
 /// The samples stand still in the world while the cloth moves among them, so what it feels has no jumps, unless it is so
 /// large that it changes between lattices of [`MOST_SAMPLES`].
-pub(super) struct Field {
+pub(super) struct GustField {
     /// Place of the first sample, m, relative to the cloth's origin.
     corner: Vec3A,
     /// Samples per metre; zero where one sample stands for all.
@@ -43,7 +43,7 @@ pub(super) struct Field {
     velocity: [Vec3A; (MOST_SAMPLES * MOST_SAMPLES * MOST_SAMPLES) as usize],
 }
 
-impl Field {
+impl GustField {
     /// Samples `wind` over the box around `position`.
     pub fn sample(wind: &WindSource, position: &[Vec3A]) -> Self {
         let mut field = Self::around(wind, position);

@@ -145,7 +145,7 @@ pub fn builds(lines: &[Value]) -> String {
         format!("| {build} |{cells}\n")
     };
     let bars = "---:|".repeat(sizes.len());
-    format!("| build, instructions |{heads}\n|---|{bars}\n{}", rows.iter().map(row).collect::<String>())
+    format!("| build, simd_level |{heads}\n|---|{bars}\n{}", rows.iter().map(row).collect::<String>())
 }
 
 fn time(line: &Value) -> f64 {

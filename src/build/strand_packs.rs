@@ -4,7 +4,7 @@ use bevy::platform::collections::HashMap;
 
 use super::threads::Thread;
 use crate::solver::{
-    Braid, Spring, SpringKind,
+    StrandPack, Spring, SpringKind,
     simd::{LANES, Lane},
 };
 
@@ -17,7 +17,7 @@ const LEAST_FILLED: f32 = 0.4;
 ///
 /// Threads get colours as springs do, in their order, and those of one colour are sorted by length. Rings are only beside
 /// rings of the same length.
-pub(super) fn plait(count: usize, threads: &[Thread], springs: &[(SpringKind, Spring)]) -> (Vec<Braid>, Vec<bool>) {
+pub(super) fn plait(count: usize, threads: &[Thread], springs: &[(SpringKind, Spring)]) -> (Vec<StrandPack>, Vec<bool>) {
     let colors = colors(count, threads);
     let mut sorted: Vec<(u32, &Thread)> = colors.into_iter().zip(threads).collect();
     // Stable, so threads that are alike keep their order.
@@ -28,11 +28,11 @@ pub(super) fn plait(count: usize, threads: &[Thread], springs: &[(SpringKind, Sp
     };
     let mut plait = Plait::new(count, springs);
     let groups = sorted.chunk_by(may_be_braided).flat_map(|group| group.chunks(LANES));
-    let braids: Vec<Braid> = groups.map(|threads| plait.braid(threads)).collect();
-    let places: usize = braids.iter().map(|braid| braid.nodes.len() * LANES).sum();
+    let strand_packs: Vec<StrandPack> = groups.map(|threads| plait.braid(threads)).collect();
+    let places: usize = strand_packs.iter().map(|braid| braid.nodes.len() * LANES).sum();
     let filled: usize = threads.iter().map(|thread| thread.springs.len()).sum();
     if filled as f32 >= LEAST_FILLED * places as f32 {
-        (braids, plait.woven)
+        (strand_packs, plait.woven)
     } else {
         (Vec::new(), vec![false; springs.len()])
     }
@@ -67,9 +67,9 @@ impl<'a> Plait<'a> {
         Self { count, springs, bends, woven: vec![false; springs.len()] }
     }
 
-    fn braid(&mut self, threads: &[(u32, &Thread)]) -> Braid {
+    fn braid(&mut self, threads: &[(u32, &Thread)]) -> StrandPack {
         let length = threads.iter().map(|(_, thread)| thread.particles.len()).max().unwrap_or(0);
-        let mut braid = Braid {
+        let mut braid = StrandPack {
             nodes: vec![[self.count as u32; LANES]; length],
             stretch: vec![Lane::default(); length],
             bend: vec![Lane::default(); length],

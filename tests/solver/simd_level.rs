@@ -6,7 +6,7 @@ use bevy::{
 };
 use bevy_drape::{
     prelude::{ClothGrid, ClothGrip, ClothSprings, Fabric},
-    solver::{Elasticity, Instructions, Material, Method, Obstacle, Solid, WindRegion, WindSource, force::wind::Gusts},
+    solver::{Elasticity, Material, Method, Obstacle, SimdLevel, Solid, WindRegion, WindSource, force::wind::Gusts},
 };
 
 use crate::{
@@ -69,9 +69,9 @@ fn the_widest_instructions_and_the_plainest_give_the_same_bits() {
     let materials = [of_springs(0.0), of_springs(0.02), of_moduli(0.0), of_moduli(0.02)];
     let cases = ALL.into_iter().flat_map(|method| materials.map(|material| (method, material)));
     for ((method, material), mesh) in cases.flat_map(|case| meshes.iter().map(move |mesh| (case, mesh.clone()))) {
-        let [best, baseline] = [Instructions::Best, Instructions::Baseline].map(|instructions| {
+        let [best, baseline] = [SimdLevel::Best, SimdLevel::Baseline].map(|simd_level| {
             let mut bed = scene(mesh.clone(), method, material);
-            bed.scratch.instructions = instructions;
+            bed.scratch.simd_level = simd_level;
             // Where a sheet is torn at for long, the explicit method comes to its end.
             let frames = if method == Method::Explicit { 20 } else { 60 };
             let touched = (0..frames).map(|_| bed.step(1.0 / 60.0).contacts).max();

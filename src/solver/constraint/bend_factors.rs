@@ -4,47 +4,47 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use super::{
     curvature::{self, Factor},
-    weave::{Loom, blocks_across, take},
-    yarn::Yarn,
+    weave::{StrandScratch, blocks_across, take},
+    yarn::StrandMaterial,
 };
 use crate::solver::{
     Lanes, Lattice,
     lanes::Block,
-    lattice::{Curl, Threads},
-    simd::{Instructions, LANES, SHORTEST, Vec3x8},
+    lattice::{RestCurvature, StrandSet},
+    simd::{SimdLevel, LANES, SHORTEST, Vec3x8},
 };
 
 /// As threads are solved: for eight side by side, node after node.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Plate {
+pub(in crate::solver) struct BendFactors {
     /// The matrix of the rows' bends, in factors.
     pub rows: Vec<Factor>,
     /// The matrix of the columns' bends, in factors.
     pub columns: Vec<Factor>,
     /// What bends and twists are at rest, turned into the directions that the cloth has now, m.
-    pub rest: Rest,
+    pub rest: RestBends,
 }
 
 /// Empty where the cloth is flat.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Rest {
+pub(in crate::solver) struct RestBends {
     pub rows: Vec<Block>,
     pub columns: Vec<Block>,
     pub cells: Vec<Block>,
 }
 
-impl Plate {
+impl BendFactors {
     /// What bends nowhere.
     pub const NONE: Self = Self {
         rows: Vec::new(),
         columns: Vec::new(),
-        rest: Rest { rows: Vec::new(), columns: Vec::new(), cells: Vec::new() },
+        rest: RestBends { rows: Vec::new(), columns: Vec::new(), cells: Vec::new() },
     };
 }
 
-impl Rest {
+impl RestBends {
     /// Turns what bends are at rest into the directions that the cloth has at the start of the step.
-    pub fn turn(&mut self, lattice: &Lattice, lanes: &Lanes, instructions: Instructions) {
+    pub fn turn(&mut self, lattice: &Lattice, lanes: &Lanes, simd_level: SimdLevel) {
         let Some(curl) = &lattice.curl else {
             *self = Self::default();
             return;
@@ -54,11 +54,11 @@ impl Rest {
         self.columns.resize(count, Block::default());
         self.cells.resize(count, Block::default());
         let places = Places { lattice, blocks: &lanes.position.0 };
-        dispatch!(instructions.level(), simd => self.turn_all(simd, places, curl));
+        dispatch!(simd_level.level(), simd => self.turn_all(simd, places, curl));
     }
 
     #[inline(always)]
-    fn turn_all<S: Simd>(&mut self, simd: S, places: Places, curl: &Curl) {
+    fn turn_all<S: Simd>(&mut self, simd: S, places: Places, curl: &RestCurvature) {
         let (rows, width) = (places.lattice.rows, places.lattice.along_rows.nodes);
         for pack in 0..width / LANES {
             for first in (0..rows).step_by(LANES) {
@@ -154,32 +154,32 @@ impl Places<'_> {
 
 /// Works out what the bends of a lattice have in common in all substeps. Only the threads of a sheet have any.
 pub(in crate::solver) fn prepare(
-    plate: &mut Plate,
+    bend_factors: &mut BendFactors,
     lattice: &Lattice,
-    yarn: Yarn,
+    yarn: StrandMaterial,
     lanes: &mut Lanes,
-    loom: &mut Loom,
-    instructions: Instructions,
+    strand_scratch: &mut StrandScratch,
+    simd_level: SimdLevel,
 ) {
-    let Yarn::Sheet { rigidity: Some(rigidity), .. } = yarn else { return };
-    plate.rest.turn(lattice, lanes, instructions);
-    let (order, level) = (lattice.order(), instructions.level());
-    let Threads { nodes, count, curvature: weights, .. } = &lattice.along_columns;
-    plate.columns.resize(weights.len(), Factor::default());
-    loom.make_room(*nodes);
-    for (first, factors) in plate.columns.chunks_exact_mut(*nodes).enumerate() {
+    let StrandMaterial::GridView { rigidity: Some(rigidity), .. } = yarn else { return };
+    bend_factors.rest.turn(lattice, lanes, simd_level);
+    let (order, level) = (lattice.order(), simd_level.level());
+    let StrandSet { nodes, count, curvature: weights, .. } = &lattice.along_columns;
+    bend_factors.columns.resize(weights.len(), Factor::default());
+    strand_scratch.make_room(*nodes);
+    for (first, factors) in bend_factors.columns.chunks_exact_mut(*nodes).enumerate() {
         for band in order.bands() {
-            take(lanes.band(band).inverse_mass, band, *nodes, first..first + 1, &mut loom.inverse_mass);
+            take(lanes.band(band).inverse_mass, band, *nodes, first..first + 1, &mut strand_scratch.inverse_mass);
         }
-        let (masses, weights) = (&loom.inverse_mass, &weights[first * nodes..]);
+        let (masses, weights) = (&strand_scratch.inverse_mass, &weights[first * nodes..]);
         dispatch!(level, simd => {
             curvature::factorize(simd, *count, masses, weights, rigidity, factors)
         });
     }
-    let Threads { nodes, count, curvature: weights, .. } = &lattice.along_rows;
-    plate.rows.resize(weights.len(), Factor::default());
+    let StrandSet { nodes, count, curvature: weights, .. } = &lattice.along_rows;
+    bend_factors.rows.resize(weights.len(), Factor::default());
     let masses = lanes.row_masses.chunks_exact(*nodes).zip(weights.chunks_exact(*nodes));
-    for ((masses, weights), factors) in masses.zip(plate.rows.chunks_exact_mut(*nodes)) {
+    for ((masses, weights), factors) in masses.zip(bend_factors.rows.chunks_exact_mut(*nodes)) {
         dispatch!(level, simd => {
             curvature::factorize(simd, *count, masses, weights, rigidity, factors)
         });
