@@ -13,6 +13,7 @@ mod bad_surroundings;
 mod bad_transforms;
 mod bad_values;
 mod changed_mesh;
+mod closing_boxes;
 mod cloth_on_cloth;
 mod coarse_meshes;
 mod collision_mask;

@@ -10,6 +10,7 @@ use super::{
     target::{FaceStrain, ObstacleGeometry},
 };
 use crate::solver::{
+    StepContext,
     contact::{
         Shape, inside,
         mesh::MeshShape,
@@ -158,11 +159,16 @@ impl ObstacleSearch {
             let mut pair = one.pair;
             if let Shape::Solid(solid) = &obstacle.shape
                 && !pierced.contains(&(pair.points[0], one.face))
-                && depth_of(one, solid, position, at.first)
-                    > 2.0 * sink(cloth.ctx) + thickness(&pair, target.radii, position, at.first)
             {
-                // Its particles find the way out.
-                continue;
+                let depth = depth_of(one, solid, position, at.first);
+                if depth > 2.0 * sink(cloth.ctx) + thickness(&pair, target.radii, position, at.first) {
+                    // Its particles find the way out.
+                    continue;
+                }
+                if depth > 0.0 && is_pressed_over(one, target.radii, cloth.ctx) {
+                    // It belongs on the other side.
+                    (pair.normal, pair.gap) = (-pair.normal, -pair.gap);
+                }
             }
             // The cloth's features come first but where a corner of the obstacle meets a face.
             let of_obstacle = if pair.features == Features::PointFace { 0..1 } else { 2..4 };
@@ -248,6 +254,25 @@ fn thickness(pair: &FeatureContact, radii: &[f32], position: &[Vec3A], first: u3
     let longest = p.distance_squared(q).max(q.distance_squared(r)).max(r.distance_squared(p));
     if 4.0 * radius * radius < longest { radius } else { 0.0 }
 }
+
+/// Whether the cloth of a pair that is inside of a solid has come over the solid's edge there, or onto its corner, because obstacles
+/// close on each other: the last one that particles are pushed out of has its way, and presses them into the others.
+///
+/// Where all obstacles stay, nothing is pressed in: what is inside has been so from the start, and its particles find the way out.
+fn is_pressed_over(found: &Found, radii: &[f32], ctx: &StepContext) -> bool {
+    let Found { pair, nearest, .. } = found;
+    let of_obstacle = if pair.features == Features::PointFace { 0..1 } else { 2..4 };
+    let is_sharp =
+        of_obstacle.into_iter().all(|k| radii.get(pair.points[k] as usize).is_none_or(|&radius| radius == 0.0));
+    // Where the nearest place is at an end, the cloth ends there, and comes over nothing.
+    let crosses = nearest.weights.iter().all(|weight| weight.abs() > CROSSING);
+    let is_near = pair.gap < pair.distance + sink(ctx);
+    let moves = || ctx.obstacles.iter().any(|other| other.start != other.end || other.body.is_some());
+    is_sharp && crosses && is_near && moves()
+}
+
+/// The least weight of each of two features' points, in the place where they are nearest, of features that cross there.
+const CROSSING: f32 = 1e-3;
 
 /// How deep the cloth's place of a pair is inside of a solid, m.
 fn depth_of(found: &Candidate, solid: &Solid, position: &[Vec3A], first: u32) -> f32 {
