@@ -259,8 +259,8 @@ fn thickness(pair: &FeatureContact, radii: &[f32], position: &[Vec3A], first: u3
 /// close on each other: the last one that particles are pushed out of has its way, and presses them into the others.
 ///
 /// Where all obstacles stay, nothing is pressed in: what is inside has been so from the start, and its particles find the way out.
-fn is_pressed_over(found: &Found, radii: &[f32], ctx: &StepContext) -> bool {
-    let Found { pair, nearest, .. } = found;
+fn is_pressed_over(found: &Candidate, radii: &[f32], ctx: &StepContext) -> bool {
+    let Candidate { pair, nearest, .. } = found;
     let of_obstacle = if pair.features == Features::PointFace { 0..1 } else { 2..4 };
     let is_sharp =
         of_obstacle.into_iter().all(|k| radii.get(pair.points[k] as usize).is_none_or(|&radius| radius == 0.0));
