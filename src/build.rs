@@ -6,7 +6,6 @@ use crate::{error::ClothError, solver::Topology};
 
 mod bends;
 mod blend;
-mod strand_packs;
 mod candidate;
 mod cells;
 mod chart;
@@ -27,6 +26,7 @@ mod rate;
 mod shares;
 pub(crate) mod source;
 mod springs;
+mod strand_packs;
 pub(crate) mod stretch;
 pub(crate) mod system;
 mod threads;

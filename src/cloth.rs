@@ -6,7 +6,7 @@ use crate::{
     error::{ClothError, check},
     fabric::Fabric,
     pins::Pins,
-    solver::{SubstepPolicy, LevelPass, Method, SelfCollision, Topology},
+    solver::{LevelPass, Method, SelfCollision, SubstepPolicy, Topology},
     state::ClothState,
 };
 

@@ -2,10 +2,10 @@
 
 mod begun;
 pub(crate) mod file;
-pub(crate) mod resolution;
 pub(crate) mod handle;
 pub(crate) mod loader;
 mod presets;
+pub(crate) mod resolution;
 mod springs;
 
 use bevy::prelude::*;

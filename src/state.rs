@@ -16,8 +16,8 @@ use crate::{
     grab::Grabs,
     rest_scale::RestScale,
     solver::{
-        self, PinMotion, SubstepPolicy, Energy, Grab, Material, BodyAttachment, AttachedPin, Obstacle, Particles, BodyImpulse, StepReport, Strain,
-        BodyDisplacement, Tether, Tethers, Topology, MeshStructure, WindSource,
+        self, AttachedPin, BodyAttachment, BodyDisplacement, BodyImpulse, Energy, Grab, Material, MeshStructure,
+        Obstacle, Particles, PinMotion, StepReport, Strain, SubstepPolicy, Tether, Tethers, Topology, WindSource,
     },
     teleport::Jump,
 };

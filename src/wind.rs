@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::{
     pose::Poses,
-    solver::{Ellipsoid, WindRegion, WindSource, force::wind::Gusts},
+    solver::{Ellipsoid, Gusts, WindRegion, WindSource},
 };
 
 /// A wind. It presses on triangles by their area and their side to it, so it fills sails and lets flags flutter.

@@ -6,10 +6,8 @@ use bevy::{
     math::{Vec3A, ops},
     prelude::*,
 };
-use bevy_drape::{
-    build,
-    solver::{SelfCollision, Topology},
-};
+use bevy_drape::build;
+use bevy_drape::solver::{SelfCollision, Topology};
 
 use super::{
     mesh::{self, MeshSource, Top},

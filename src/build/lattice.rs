@@ -13,7 +13,7 @@ use super::{
     grouped::Grouped,
     plate::{ENDS, Plate},
 };
-use crate::solver::{Bend, Grain, Lattice, Spring, SpringKind, lattice::Link};
+use crate::solver::{Bend, Grain, Lattice, Spring, SpringKind, topology::lattice::Link};
 
 /// Particles row after row, as they stand in the mesh.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,7 +2,7 @@
 
 use crate::solver::{
     Lattice, Level,
-    level::{Prolongation, TransferOperator},
+    topology::level::{Prolongation, TransferOperator},
 };
 
 mod chart;

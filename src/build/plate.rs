@@ -13,8 +13,8 @@ use bevy::prelude::*;
 use super::lattice::Rectangle;
 use crate::solver::{
     Bend,
-    lattice::RestCurvature,
-    simd::{LANES, Lane},
+    layout::simd::{LANES, Lane},
+    topology::lattice::RestCurvature,
 };
 
 /// A bend at rest of less than this angle is a flat place and rounding, rad.

@@ -4,8 +4,8 @@ use bevy::platform::collections::HashMap;
 
 use super::threads::Thread;
 use crate::solver::{
-    StrandPack, Spring, SpringKind,
-    simd::{LANES, Lane},
+    Spring, SpringKind, StrandPack,
+    layout::simd::{LANES, Lane},
 };
 
 /// The least share of the places in braids that springs have to fill: one thread takes as long as eight. So a mesh that
@@ -17,7 +17,11 @@ const LEAST_FILLED: f32 = 0.4;
 ///
 /// Threads get colours as springs do, in their order, and those of one colour are sorted by length. Rings are only beside
 /// rings of the same length.
-pub(super) fn plait(count: usize, threads: &[Thread], springs: &[(SpringKind, Spring)]) -> (Vec<StrandPack>, Vec<bool>) {
+pub(super) fn plait(
+    count: usize,
+    threads: &[Thread],
+    springs: &[(SpringKind, Spring)],
+) -> (Vec<StrandPack>, Vec<bool>) {
     let colors = colors(count, threads);
     let mut sorted: Vec<(u32, &Thread)> = colors.into_iter().zip(threads).collect();
     // Stable, so threads that are alike keep their order.

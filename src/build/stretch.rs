@@ -7,8 +7,8 @@ use bevy::{math::Mat3A, prelude::*};
 
 use super::faces;
 use crate::solver::{
-    Bend, StrandPack, Face, Lattice, Level, Tethers, StrandSet, Topology, TransferOperator,
-    simd::{LANES, Lane},
+    Bend, Face, Lattice, Level, StrandPack, StrandSet, Tethers, Topology, TransferOperator,
+    layout::simd::{LANES, Lane},
 };
 
 /// Where particles, or nodes of a level, are at rest, by their slots.

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use bevy::prelude::*;
 
 use super::{
-    bends, strand_packs,
+    bends,
     cells::{self, Cells},
     chart, coloring,
     edges::Edges,
@@ -15,7 +15,7 @@ use super::{
     lattice::{self, Rectangle},
     levels,
     plate::Plate,
-    rate, shares, springs, threads,
+    rate, shares, springs, strand_packs, threads,
 };
 use crate::{
     error::ClothError,

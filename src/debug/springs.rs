@@ -1,7 +1,7 @@
 //! Springs and tethers: what holds particles together.
 
 use super::{ClothDebugView, Lines, Shown, palette};
-use crate::solver::{SpringKind, Tether, constraint::spring};
+use crate::solver::{SpringKind, Tether, constraint::unstructured::spring};
 
 /// A tether counts as taut from this share of its longest on.
 const TAUT_FROM: f32 = 0.999;

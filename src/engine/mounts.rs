@@ -9,7 +9,7 @@ use crate::{
     cloth::ClothStatus,
     pins::PinTarget,
     pose::Poses,
-    solver::{Body, BodyAttachment, AttachedPin},
+    solver::{AttachedPin, Body, BodyAttachment},
     state::ClothState,
 };
 

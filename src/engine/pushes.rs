@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::{
     cloth::ClothStatus,
-    solver::{BodyImpulse, BodyDisplacement},
+    solver::{BodyDisplacement, BodyImpulse},
     state::{ClothState, Given},
 };
 

@@ -4,9 +4,13 @@
 
 use bevy::math::Vec3A;
 
-use super::{
-    Lanes, Material, Moduli, Particles, Spring, SpringConstants, SpringKind, StepContext, Topology,
-    constraint::{bend::BendElement, face::FaceStrain},
+use crate::solver::{
+    constraint::unstructured::{bend::element::BendElement, face::FaceStrain},
+    input::StepContext,
+    layout::lanes::Lanes,
+    material::{Material, Moduli, SpringConstants},
+    particles::Particles,
+    topology::{Spring, SpringKind, Topology},
 };
 
 /// What ω² h² + 2 γ h may come to. Symplectic Euler is stable below 4: a tenth of it is left for cloth that
@@ -19,7 +23,7 @@ const MORE_STRETCHED: f32 = 0.2;
 
 /// What keeps a step stable.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stability {
+pub(crate) struct Stability {
     /// Substeps that it takes.
     pub needed: u32,
     /// Share of stiffness and damping that [`max_substeps`](StepContext::max_substeps) of them can carry: 1 unless more
@@ -41,7 +45,7 @@ impl Stability {
 /// Symplectic Euler of x'' = -ω² x - γ x' is stable while ω² h² + 2 γ h < 4, kept below [`STABLE`] here. The largest ω²
 /// and γ of the whole cloth are bounded by Gershgorin's circles, twice the sum over a particle's springs of k/m and of
 /// c/m.
-pub(super) fn stability(
+pub(crate) fn stability(
     lanes: &Lanes,
     topology: &Topology,
     ctx: &StepContext,
@@ -128,7 +132,7 @@ fn sum_sheet_constants(topology: &Topology, moduli: &Moduli, stretched: f32, sum
 }
 
 /// Adds the springs' forces: F = k (L0 - |p - q|) n - c ((vp - vq)·n) n with n = (p - q) / |p - q|.
-pub(super) fn add_spring_forces(
+pub(crate) fn add_spring_forces(
     particles: &Particles,
     topology: &Topology,
     material: &Material,
@@ -154,7 +158,7 @@ pub(super) fn add_spring_forces(
 }
 
 /// Adds the forces of faces and bends, as they are the negative gradient of their energies.
-pub(super) fn add_sheet_forces(
+pub(crate) fn add_sheet_forces(
     particles: &Particles,
     topology: &Topology,
     moduli: &Moduli,

@@ -7,13 +7,13 @@
 
 use bevy::math::Vec3A;
 
-use super::{Particles, StepContext, Topology};
+use crate::solver::{input::StepContext, particles::Particles, topology::Topology};
 
 /// How far particles may be off a plane that counts as flat, and how far off it they are put, m: less than a fibre is thick.
 const IMPERFECTION: f32 = 1e-6;
 
 /// Takes a cloth out of its plane that is flat and about to be jerked within it, the same particles by the same lengths each time.
-pub(super) fn seed(particles: &mut Particles, topology: &Topology, ctx: &StepContext) {
+pub(crate) fn seed(particles: &mut Particles, topology: &Topology, ctx: &StepContext) {
     for axis in [Vec3A::X, Vec3A::Y, Vec3A::Z] {
         if is_jerked_across(axis, topology, ctx) && is_flat_along(axis, &particles.position) {
             for (i, (place, &w)) in (0..).zip(particles.position.iter_mut().zip(&particles.inverse_mass)) {

@@ -3,15 +3,17 @@
 use bevy::math::{Vec3A, ops};
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
-use super::{
-    StepContext,
-    lanes::{Points, Run},
-    simd::{SimdLevel, Vec3x8, lane},
+use crate::solver::{
+    input::StepContext,
+    layout::{
+        lanes::{Points, Run},
+        simd::{SimdLevel, Vec3x8, lane},
+    },
 };
 
 /// What moves particles freely during a substep.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Motion<'a> {
+pub(crate) struct Motion<'a> {
     /// Gravity, m/s².
     pub gravity: Vec3A,
     /// Force on each particle, N; none where nothing but gravity acts.
@@ -25,7 +27,7 @@ pub(super) struct Motion<'a> {
 }
 
 /// Symplectic Euler: velocities from forces (N) and gravity (m/s²), then positions from the new velocities.
-pub(super) fn predict(run: &mut Run, motion: Motion, simd_level: SimdLevel) {
+pub(crate) fn predict(run: &mut Run, motion: Motion, simd_level: SimdLevel) {
     dispatch!(simd_level.level(), simd => predict_eights(simd, run, motion));
 }
 
@@ -73,7 +75,7 @@ impl Motion<'_> {
 
 /// The most that particles may be faster than what holds the cloth.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SpeedLimit {
+pub(crate) struct SpeedLimit {
     /// Mean velocity of what holds the cloth, m/s.
     pub around: Vec3A,
     /// The most that a particle may differ from it, m/s.
@@ -99,7 +101,7 @@ impl SpeedLimit {
 
 /// What comes after the constraints of a substep.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Finish<'a> {
+pub(crate) struct Finish<'a> {
     pub limit: SpeedLimit,
     /// Duration of the substep, s.
     pub h: f32,
@@ -111,7 +113,7 @@ pub(super) struct Finish<'a> {
 ///
 /// That is (position - previous) / h, written as what the constraints have added to the integrated velocity: a way of
 /// g h² is lost to rounding when h is small, a change of speed of g h isn't.
-pub(super) fn finish(run: &mut Run, finish: Finish, simd_level: SimdLevel) {
+pub(crate) fn finish(run: &mut Run, finish: Finish, simd_level: SimdLevel) {
     dispatch!(simd_level.level(), simd => finish_eights(simd, run, finish));
 }
 

@@ -1,6 +1,6 @@
 //! The physical constants of a cloth, as the solver reads them.
 
-use super::{Grain, Spring, SpringKind};
+use crate::solver::topology::{Grain, Spring, SpringKind};
 
 /// What a cloth is made of. All values are finite and not negative.
 #[derive(Clone, Copy, Debug, PartialEq)]

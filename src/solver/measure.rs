@@ -2,13 +2,16 @@
 
 use bevy::math::Vec3A;
 
-use super::{
-    Material, Particles, SpringKind, Topology,
-    constraint::{bend::BendElement, face::FaceStrain, spring},
-    contact::{
-        surface::{Bounds, BvhBounds, Traversal},
-        tangle,
+use crate::solver::{
+    constraint::unstructured::{bend::element::BendElement, face::FaceStrain, spring},
+    contact::feature::tangle,
+    geometry::bvh::{
+        bounds::{Bounds, BvhBounds},
+        traversal::Traversal,
     },
+    material::Material,
+    particles::Particles,
+    topology::{SpringKind, Topology},
 };
 
 /// Stretch along the threads: change of length over rest length of the structural springs, no unit. Negative where
@@ -129,7 +132,10 @@ pub fn intersecting_pairs_between(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::{Elasticity, Spring, SpringBatch, SpringConstants};
+    use crate::solver::{
+        material::{Elasticity, SpringConstants},
+        topology::{Spring, SpringBatch},
+    };
 
     #[test]
     fn a_stretched_moving_pair_has_the_strain_and_the_energy_of_the_book() {

@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use bevy::math::Vec3A;
 
-use super::{Material, Topology};
+use crate::solver::{material::Material, topology::Topology};
 
 /// Positions, velocities and masses of all particles of one cloth, one entry a particle in each array.
 ///
@@ -53,7 +53,7 @@ impl Particles {
     }
 
     /// Whether an external force acts on any of some particles.
-    pub(super) fn is_pushed(&self, some: Range<usize>) -> bool {
+    pub(crate) fn is_pushed(&self, some: Range<usize>) -> bool {
         // Many at a time: mostly there is none, and all are looked at.
         let sum = |forces: &[Vec3A]| forces.iter().fold(Vec3A::ZERO, |sum, force| sum + force.abs());
         self.force[some].chunks(64).any(|forces| sum(forces) != Vec3A::ZERO)

@@ -2,69 +2,71 @@
 
 use bevy::math::Vec3A;
 
-use super::{
-    SimdLevel, Lanes, BodyImpulse, BodyDisplacement,
+use crate::solver::{
     constraint::{
-        beads::GatheredParticles,
-        bend::{BendSolver, ChebyshevBuffers},
-        level::Levels,
-        mount::BodyAttachments,
-        bend_factors::BendFactors,
-        tether::PinPlaces,
+        attach::{body::BodyAttachments, tether::PinPlaces},
+        multigrid::Levels,
+        strand::bend_factors::BendFactors,
+        unstructured::bend::{BendSolver, stages::ChebyshevBuffers},
     },
-    contact::{Bodies, MeshContacts, BroadPhase, touch::FeatureContacts},
+    contact::{body::Bodies, broad_phase::BroadPhase, feature::FeatureContacts, mesh::MeshContacts},
     force::wind::Air,
-    lanes::Points,
-    share::WorkerScratch,
+    input::{BodyDisplacement, BodyImpulse},
+    layout::{
+        gathered::GatheredParticles,
+        lanes::{Lanes, Points},
+        simd::SimdLevel,
+    },
+    parallel::grid_substep::WorkerScratch,
 };
 
-/// Working memory of [`step`](super::step()). One can serve any number of cloths in turn.
+/// Working memory of [`step`](crate::solver::step()). One can serve any number of cloths in turn.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     /// Which instructions steps use.
     pub simd_level: SimdLevel,
     /// The particles.
-    pub(super) lanes: Lanes,
+    pub(crate) lanes: Lanes,
     /// The air around them.
-    pub(super) air: Air,
+    pub(crate) air: Air,
     /// External force and force of the air on each particle, N: constant over some substeps.
-    pub(super) steady_force: Vec<Vec3A>,
+    pub(crate) steady_force: Vec<Vec3A>,
     /// The steady force and the force of the springs on each particle, N.
-    pub(super) force: Vec<Vec3A>,
+    pub(crate) force: Vec<Vec3A>,
     /// The force that moves the particles, N.
-    pub(super) applied_force: Points,
+    pub(crate) applied_force: Points,
     /// Sum of (stiffness in N/m, damping in N·s/m) of the springs at each particle.
-    pub(super) spring_sums: Vec<(f32, f32)>,
+    pub(crate) spring_sums: Vec<(f32, f32)>,
     /// The particles one by one.
-    pub(super) beads: GatheredParticles,
+    pub(crate) beads: GatheredParticles,
     /// Their ways while they bend.
-    pub(super) ways: ChebyshevBuffers,
+    pub(crate) ways: ChebyshevBuffers,
     /// How they bend in this step.
-    pub(super) bending: Option<BendSolver>,
+    pub(crate) bending: Option<BendSolver>,
     /// The coarse levels.
-    pub(super) levels: Levels,
+    pub(crate) levels: Levels,
     /// What a lattice's bends have in common.
-    pub(super) bend_factors: BendFactors,
+    pub(crate) bend_factors: BendFactors,
     /// The pins that hold tethers.
-    pub(super) pins: PinPlaces,
+    pub(crate) pins: PinPlaces,
     /// Bodies that anchors are fixed to.
-    pub(super) mounts: BodyAttachments,
+    pub(crate) mounts: BodyAttachments,
     /// What this thread needs of its own.
-    pub(super) bench: WorkerScratch,
+    pub(crate) bench: WorkerScratch,
     /// The obstacles around.
-    pub(super) near: BroadPhase,
+    pub(crate) near: BroadPhase,
     /// The faces of each of them that is a mesh.
-    pub(super) faces: Vec<MeshContacts>,
+    pub(crate) faces: Vec<MeshContacts>,
     /// The bodies among the obstacles.
-    pub(super) bodies: Bodies,
+    pub(crate) bodies: Bodies,
     /// What is touched with triangles and edges: of the first of the cloths that are stepped together.
-    pub(super) touch: FeatureContacts,
+    pub(crate) touch: FeatureContacts,
     /// What each thread needs of its own that shares a large cloth.
-    pub(super) benches: Vec<WorkerScratch>,
+    pub(crate) benches: Vec<WorkerScratch>,
 }
 
 impl Scratch {
-    /// What the cloth has given to each of the [`obstacles`](super::StepContext::obstacles) in the latest step: nothing to
+    /// What the cloth has given to each of the [`obstacles`](crate::solver::input::StepContext::obstacles) in the latest step: nothing to
     /// those that are no bodies.
     pub fn pushes(&self) -> &[BodyImpulse] {
         &self.bodies.pushes
@@ -76,7 +78,7 @@ impl Scratch {
         &self.bodies.strays
     }
 
-    /// What the cloth has given to each of the [`mounts`](super::StepContext::mounts) in the latest step, and how far that
+    /// What the cloth has given to each of the [`mounts`](crate::solver::input::StepContext::mounts) in the latest step, and how far that
     /// has come off its path by it.
     pub fn pulls(&self) -> &[(BodyImpulse, BodyDisplacement)] {
         &self.mounts.pulls

@@ -4,25 +4,30 @@ use core::ops::Range;
 
 use bevy::{math::Vec3A, tasks::TaskPool};
 
-use super::{
-    Lattice, LevelPass, Method, Particles, Scratch, SelfCollision, StepContext, StepReport, Topology,
-    constraint::{anchor, grab, weave::StrandDirection},
-    contact::{
-        self, MeshContacts,
-        outline::Sharpness,
-        touch::{self, FeatureContacts},
+use crate::solver::{
+    constraint::{
+        attach::{grab, pin_motion},
+        strand::grid::StrandDirection,
     },
-    effort::ContactRisk,
+    contact::{
+        self,
+        feature::{self, FeatureContacts},
+        mesh::MeshContacts,
+    },
     explicit::{self, Stability},
     force::wind,
     imperfection,
+    input::{ContactRisk, Method, SelfCollision, StepContext, StepReport},
     integrate::{self, Motion, SpeedLimit},
-    share,
+    parallel::grid_substep,
+    particles::Particles,
+    scratch::Scratch,
+    shape::sharp_features::Sharpness,
+    step::substep::Substep,
+    topology::{Topology, lattice::Lattice, level::LevelPass},
 };
 
 mod substep;
-
-use substep::Substep;
 
 /// Longest time step that is simulated, s. A longer one is cut down to it: after a stall the cloth falls behind the
 /// clock instead of being thrown about.
@@ -149,12 +154,12 @@ impl<'a> Plan<'a> {
         let mut near = contact::near_obstacles(particles, ctx, dt).peekable();
         let is_near = near.peek().is_some();
         // Nothing else asks for it: a cloth that nothing is near needs no surface.
-        let longest_edge = if is_near { touch::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };
+        let longest_edge = if is_near { feature::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
         let touches = ctx.self_collision != SelfCollision::Off;
         let is_mounted = !ctx.mounted.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
-        let risk = match (touch::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.self_collision) {
+        let risk = match (feature::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.self_collision) {
             (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
             (Some((Sharpness::Edge, wanted)), _) => ContactRisk::Edge(wanted),
             (None, SelfCollision::Robust) => ContactRisk::Robust,
@@ -181,7 +186,7 @@ impl<'a> Plan<'a> {
 }
 
 /// A cloth within its step.
-pub(super) struct Running<'a> {
+pub(crate) struct Running<'a> {
     pub particles: &'a mut Particles,
     pub scratch: &'a mut Scratch,
     pub topology: &'a Topology,
@@ -232,7 +237,7 @@ impl<'a> Running<'a> {
             is_pushed,
             is_near,
             touches: ctx.self_collision != SelfCollision::Off || is_near,
-            limit: SpeedLimit { around: anchor::mean_velocity(ctx.pin_motions, dt), most: ctx.max_velocity },
+            limit: SpeedLimit { around: pin_motion::mean_velocity(ctx.pin_motions, dt), most: ctx.max_velocity },
             helpers,
             last: StrandDirection::between(ctx.pin_motions, topology.order()),
             levels,
@@ -278,7 +283,7 @@ impl<'a> Running<'a> {
         if !self.has_moved {
             substep.move_freely(scratch);
         }
-        anchor::advance(&mut scratch.lanes, ctx.pin_motions, span.end, self.dt);
+        pin_motion::advance(&mut scratch.lanes, ctx.pin_motions, span.end, self.dt);
         let Scratch { lanes, mounts, applied_force, .. } = &mut **scratch;
         mounts.advance(lanes, ctx, span.clone(), self.dt, substep.applied(applied_force));
         scratch.bodies.advance(ctx, span.clone(), substep.h);
@@ -328,7 +333,7 @@ impl<'a> Running<'a> {
         let contacts = contacts + touched;
         let Scratch { lanes, steady_force, simd_level, .. } = scratch;
         match substep.helpers {
-            Some((pool, _)) => share::store(pool, lanes, particles, *simd_level),
+            Some((pool, _)) => grid_substep::store(pool, lanes, particles, *simd_level),
             None => lanes.store(particles, *simd_level),
         }
         let steady_force = if substep.is_pushed { steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
@@ -361,14 +366,14 @@ fn load(
         return Loaded { is_pushed: feels_air || particles.is_pushed(0..particles.len()), has_moved: false };
     };
     let free = (!feels_air).then(|| Motion::free(ctx, h));
-    let is_pushed = feels_air | share::load(pool, lanes, particles, lattice.order(), free, *simd_level);
+    let is_pushed = feels_air | grid_substep::load(pool, lanes, particles, lattice.order(), free, *simd_level);
     Loaded { is_pushed, has_moved: !is_pushed }
 }
 
 /// The threads that share the work, where it pays: all springs are on the lattice, and neither hands nor bodies hold it.
 fn helpers<'a>(topology: &'a Topology, ctx: &StepContext<'a>) -> Option<(&'a TaskPool, &'a Lattice)> {
     let is_woven = ctx.method == Method::Strands && topology.batches.iter().all(|batch| batch.woven);
-    let is_large = topology.particle_count() >= share::LARGE;
+    let is_large = topology.particle_count() >= grid_substep::LARGE;
     let is_free = ctx.grabs.is_empty() && ctx.mounted.is_empty();
     ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_woven && is_free)
 }

@@ -5,7 +5,17 @@ use std::sync::OnceLock;
 
 use bevy::math::Vec3;
 
-use super::{StrandPack, Lattice, Level, SelfCollision, contact::surface::TriangleBvh, order::Order};
+use crate::solver::{
+    geometry::bvh::TriangleBvh,
+    input::SelfCollision,
+    layout::order::Order,
+    topology::{lattice::Lattice, level::Level, strand_pack::StrandPack},
+};
+
+pub mod lattice;
+pub mod level;
+pub mod strand_pack;
+pub mod structure;
 
 /// Distance between balls at the particles that nothing gets through, as a share of the mean edge: of a square cell, a corner is
 /// 0.71 of its side from the middle, and the mean edge, diagonals too, is 1.14 of it.
@@ -69,7 +79,7 @@ pub struct Spring {
     pub b: u32,
     /// Rest length, m.
     pub rest: f32,
-    /// How much it carries of a sheet's [`Moduli`](super::Moduli), no unit: its stiffness in N/m is the sum of these
+    /// How much it carries of a sheet's [`Moduli`](crate::solver::material::Moduli), no unit: its stiffness in N/m is the sum of these
     /// times Cu, Cv and G. All zero for a spring that has no cell beside it.
     pub share: [f32; 3],
 }
@@ -81,7 +91,7 @@ impl Spring {
     }
 }
 
-/// A triangle that carries a sheet's [`Moduli`](super::Moduli) by itself: one that is in no cell.
+/// A triangle that carries a sheet's [`Moduli`](crate::solver::material::Moduli) by itself: one that is in no cell.
 ///
 /// The deformation takes a step along the warp to `warp[0] (xb - xa) + warp[1] (xc - xa)` for its corners a, b, c, and
 /// one along the weft likewise.
@@ -125,7 +135,7 @@ pub struct Bend {
 pub struct BendBatch {
     /// Their place in [`Topology::bends`].
     pub range: Range<usize>,
-    /// Whether [`Topology::lattice`] has them too: [`Method::Strands`](super::Method::Strands) solves them there.
+    /// Whether [`Topology::lattice`] has them too: [`Method::Strands`](crate::solver::input::Method::Strands) solves them there.
     pub woven: bool,
 }
 
@@ -136,7 +146,7 @@ pub struct SpringBatch {
     pub kind: SpringKind,
     /// Their place in [`Topology::springs`].
     pub range: Range<usize>,
-    /// Whether [`Topology::lattice`] or [`Topology::strand_packs`] have them too: [`Method::Strands`](super::Method::Strands)
+    /// Whether [`Topology::lattice`] or [`Topology::strand_packs`] have them too: [`Method::Strands`](crate::solver::input::Method::Strands)
     /// solves them there.
     pub woven: bool,
     /// Whether any of them carries a part of a sheet's moduli.
@@ -189,7 +199,7 @@ impl Topology {
     }
 
     /// Triangles, corners and edges to be found by what touches them: sorted when that is asked for first.
-    pub(super) fn surface(&self) -> &TriangleBvh {
+    pub(crate) fn surface(&self) -> &TriangleBvh {
         self.surface.get_or_init(|| TriangleBvh::new(&self.rest, &self.triangles))
     }
 

@@ -7,7 +7,8 @@ use bevy::{
     gizmos::{GizmoHandles, GizmoPlugin},
     prelude::*,
 };
-use bevy_drape::{debug::*, prelude::*, solver::SpringKind};
+use bevy_drape::solver::SpringKind;
+use bevy_drape::{debug::*, prelude::*};
 
 use crate::common::*;
 

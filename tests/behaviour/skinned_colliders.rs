@@ -10,7 +10,8 @@ use bevy::{
     },
     prelude::*,
 };
-use bevy_drape::{Obstacles, prelude::*, solver::Shape};
+use bevy_drape::solver::Shape;
+use bevy_drape::{Obstacles, prelude::*};
 
 use crate::{
     common::*,

@@ -4,10 +4,8 @@ use bevy::{
     math::{DVec3, Isometry3d, Vec3A},
     prelude::*,
 };
-use bevy_drape::{
-    prelude::{ClothGrid, ClothSprings},
-    solver::{Ellipsoid, Material, WindRegion, WindSource, force::wind::Gusts},
-};
+use bevy_drape::prelude::{ClothGrid, ClothSprings};
+use bevy_drape::solver::{Ellipsoid, Gusts, Material, WindRegion, WindSource};
 
 use crate::bench_bed::{Bed, GRAVITY, bits, springs_in_air};
 

@@ -13,7 +13,7 @@ const FORBIDDEN: [&str; 14] = [
     "bevy::transform",
     "bevy::time",
     "prelude::*",
-    "Query<",
+    " Query<",
     "Res<",
     "Commands",
     "Component",

@@ -1,7 +1,7 @@
 //! What is looked at after each frame.
 
 use bevy::math::Vec3A;
-use bevy_drape::solver::{SpringKind, constraint::spring::strain, measure};
+use bevy_drape::solver::{SpringKind, constraint::unstructured::spring::strain, measure};
 
 use super::{Scene, depth};
 

@@ -6,7 +6,7 @@ use bevy::{
     math::{DVec3, Vec3A},
     prelude::*,
 };
-use bevy_drape::solver::{WindRegion, WindSource, force::wind::Gusts};
+use bevy_drape::solver::{Gusts, WindRegion, WindSource};
 
 use super::{Scene, Settings};
 

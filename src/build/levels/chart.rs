@@ -10,7 +10,7 @@
 use bevy::prelude::*;
 
 use super::by_strides;
-use crate::solver::{LinearWeights, Lattice, Level, level::TransferOperator};
+use crate::solver::{Lattice, Level, LinearWeights, topology::level::TransferOperator};
 
 /// Parts that the way from node to node is cut into to be measured along the cloth.
 const PARTS: usize = 4;

@@ -12,12 +12,11 @@ use core::ops::Range;
 
 use bevy::math::{Isometry3d, Mat3A, Quat, Vec3A};
 
-use super::{Obstacle, BodyImpulse, BodyDisplacement};
-use crate::solver::StepContext;
+use crate::solver::input::{BodyDisplacement, BodyImpulse, Obstacle, StepContext};
 
 /// What bodies do within a step.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Bodies {
+pub(crate) struct Bodies {
     /// Of each obstacle that is one.
     moved: Vec<Option<MovedBody>>,
     /// What each obstacle was given.
@@ -28,7 +27,7 @@ pub(in crate::solver) struct Bodies {
 
 /// A body within a step.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::solver) struct MovedBody {
+pub(crate) struct MovedBody {
     /// Inverse mass, 1/kg.
     pub inverse_mass: f32,
     /// Inverse of the tensor of inertia along the world's axes, as it is turned now, 1/(kg m²).
@@ -204,7 +203,7 @@ mod tests {
     use bevy::math::primitives::Sphere;
 
     use super::*;
-    use crate::solver::{Body, Solid};
+    use crate::solver::{input::Body, shape::Solid};
 
     /// A body of 2 kg whose centre is beside its origin, and which goes along X.
     fn ball() -> Obstacle {

@@ -3,29 +3,33 @@
 use bevy::{math::Vec3A, tasks::TaskPool};
 
 use crate::solver::{
-    Lattice, LevelPass, Method, Particles, Scratch, StepContext, Tethers, Topology,
     constraint::{
-        bend::BendSolver,
-        braid::StrandPackSolver,
-        diagonal::{self, CellMaterial},
-        grab,
-        law::Scaled,
-        level::LevelSolve,
-        loose::UnstructuredPass,
-        bend_factors, tether,
-        weave::{self, StrandDirection, GridStrandSolver},
-        yarn::StrandMaterial,
+        attach::{grab, tether},
+        multigrid::LevelSolve,
+        strand::{
+            bend_factors,
+            diagonal::{self, CellMaterial},
+            grid::{self, GridStrandSolver, StrandDirection},
+            law::Scaled,
+            material::StrandMaterial,
+            packs::StrandPackSolver,
+        },
+        unstructured::{UnstructuredPass, bend::BendSolver},
     },
     explicit::{self, Stability},
     force::wind,
+    input::{Method, StepContext, Tethers},
     integrate::{self, Finish, Motion, SpeedLimit},
-    lanes::{Points, Run},
-    share::{self, WorkerScratch, SharedStep},
+    layout::lanes::{Points, Run},
+    parallel::grid_substep::{self, SharedStep, WorkerScratch},
+    particles::Particles,
+    scratch::Scratch,
+    topology::{Topology, lattice::Lattice, level::LevelPass},
 };
 
 /// What all substeps of a step have in common.
 #[derive(Clone, Copy)]
-pub(super) struct Substep<'a> {
+pub(crate) struct Substep<'a> {
     pub topology: &'a Topology,
     pub ctx: &'a StepContext<'a>,
     /// Duration, s.
@@ -58,7 +62,7 @@ impl Substep<'_> {
         if self.ctx.method == Method::Strands && self.topology.lattice.is_some() && self.helpers.is_none() {
             for band in scratch.lanes.order.bands() {
                 let Run { inverse_mass, row_masses, .. } = scratch.lanes.band(band);
-                weave::masses_along_rows(inverse_mass, band, row_masses, scratch.simd_level);
+                grid::masses_along_rows(inverse_mass, band, row_masses, scratch.simd_level);
             }
         }
         if let Some(lattice) = self.topology.lattice.as_ref().filter(|_| self.ctx.method == Method::Strands) {
@@ -142,7 +146,7 @@ impl Substep<'_> {
                 slack: self.slack,
                 finish,
             };
-            share::solve(pool, lanes, benches, &work);
+            grid_substep::solve(pool, lanes, benches, &work);
             return finish.is_some();
         }
         if let Some(run) = &run {
@@ -152,17 +156,33 @@ impl Substep<'_> {
             }
         }
         self.solve_tethers(scratch);
-        let Scratch { lanes, beads, ways, bending, bench: WorkerScratch { strand_scratch, seam, bias, .. }, bend_factors, simd_level, .. } =
-            scratch;
+        let Scratch {
+            lanes,
+            beads,
+            ways,
+            bending,
+            bench: WorkerScratch { strand_scratch, seam, bias, .. },
+            bend_factors,
+            simd_level,
+            ..
+        } = scratch;
         let (material, h) = (&self.ctx.material, self.h);
         let strand_packs = &self.topology.strand_packs;
-        let strand_pack_solver = (!strand_packs.is_empty()).then_some(StrandPackSolver { strand_packs, yarn, strand_scratch: &mut *strand_scratch });
+        let strand_pack_solver = (!strand_packs.is_empty()).then_some(StrandPackSolver {
+            strand_packs,
+            yarn,
+            strand_scratch: &mut *strand_scratch,
+        });
         self.loose(false, *bending, strand_pack_solver).solve(lanes, beads, ways, *simd_level);
         if let Some(lattice) = &self.topology.lattice {
             let mut run = lanes.whole();
             let mut sheet = run.sheet();
             diagonal::solve(&mut sheet, lattice, CellMaterial::new(material, h, bend_factors), seam, bias, *simd_level);
-            GridStrandSolver { lattice, yarn, bend_factors, simd_level: *simd_level }.solve(&mut sheet, self.last, strand_scratch);
+            GridStrandSolver { lattice, yarn, bend_factors, simd_level: *simd_level }.solve(
+                &mut sheet,
+                self.last,
+                strand_scratch,
+            );
         }
         false
     }
@@ -173,8 +193,20 @@ impl Substep<'_> {
         self.loose(true, *bending, None).solve(lanes, beads, ways, *simd_level);
     }
 
-    fn loose<'a>(&'a self, woven: bool, bending: Option<BendSolver>, strand_pack_solver: Option<StrandPackSolver<'a>>) -> UnstructuredPass<'a> {
-        UnstructuredPass { topology: self.topology, material: &self.ctx.material, h: self.h, woven, bending, strand_pack_solver }
+    fn loose<'a>(
+        &'a self,
+        woven: bool,
+        bending: Option<BendSolver>,
+        strand_pack_solver: Option<StrandPackSolver<'a>>,
+    ) -> UnstructuredPass<'a> {
+        UnstructuredPass {
+            topology: self.topology,
+            material: &self.ctx.material,
+            h: self.h,
+            woven,
+            bending,
+            strand_pack_solver,
+        }
     }
 
     /// Tethers to hands, then those to pins.

@@ -7,7 +7,7 @@
 use bevy::math::{UVec3, Vec3, Vec3A};
 use fastnoise_lite::{FastNoiseLite, NoiseType};
 
-use super::WindSource;
+use crate::solver::input::WindSource;
 
 /// Most samples of a lattice along each axis. Where a cloth is larger, the lattice is coarser, and so are its eddies.
 const MOST_SAMPLES: u32 = 8;
@@ -15,26 +15,11 @@ const MOST_SAMPLES: u32 = 8;
 /// Samples along the size of an eddy.
 const SAMPLES_PER_EDDY: f32 = 2.0;
 
-/// How a wind differs from its mean, in space and time. The same seed gives the same wind on every run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gusts {
-    /// Strength of slow gusts as a share of the mean speed: 0 for none, 1 for from calm to twice the speed.
-    pub strength: f32,
-    /// Time from gust to gust, s.
-    pub period: f32,
-    /// Strength of eddies as a share of the mean speed. 0.1 over open land, 0.3 in a town.
-    pub turbulence: f32,
-    /// Size of the eddies, m.
-    pub eddy_size: f32,
-    /// Seed of the noise.
-    pub seed: u32,
-}
-
 /// Air velocity around one cloth, m/s.
 ///
 /// The samples stand still in the world while the cloth moves among them, so what it feels has no jumps, unless it is so
 /// large that it changes between lattices of [`MOST_SAMPLES`].
-pub(super) struct GustField {
+pub(crate) struct GustField {
     /// Place of the first sample, m, relative to the cloth's origin.
     corner: Vec3A,
     /// Samples per metre; zero where one sample stands for all.

@@ -1,0 +1,143 @@
+//! What surrounds a cloth during one step.
+
+use bevy::{
+    math::Vec3A,
+    reflect::{Reflect, std_traits::ReflectDefault},
+    tasks::TaskPool,
+};
+
+use crate::solver::material::Material;
+
+mod body;
+mod grab;
+mod obstacle;
+mod pin_motion;
+mod substep_policy;
+mod tether;
+mod wind;
+
+pub use crate::solver::input::{
+    body::{AttachedPin, Body, BodyAttachment, BodyDisplacement, BodyImpulse},
+    grab::{Grab, GrabTether},
+    obstacle::Obstacle,
+    pin_motion::PinMotion,
+    substep_policy::SubstepPolicy,
+    tether::{Tether, Tethers},
+    wind::{Gusts, WindRegion, WindSource},
+};
+pub(crate) use crate::solver::input::{substep_policy::ContactRisk, tether::TetherBlock};
+
+/// How the springs are integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Extended position-based dynamics, with each thread of a regular mesh solved exactly and coarse levels for the long
+    /// waves: stable at any stiffness, and stretched least.
+    #[default]
+    Strands,
+    /// Extended position-based dynamics, spring by spring in colours: stable at any stiffness.
+    Xpbd,
+    /// Forces and symplectic Euler, the textbook form: accurate, and costly where springs are stiff.
+    Explicit,
+}
+
+/// What of a cloth meets itself and other cloths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Reflect)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub enum SelfCollision {
+    /// Nothing: it passes through itself.
+    #[default]
+    Off,
+    /// Its particles, as balls: fast, and good enough where nothing thin or quick comes between them.
+    Particles,
+    /// Its triangles and edges: folds, layers and knots stay apart.
+    Robust,
+}
+
+/// Settings and surroundings of one step.
+#[derive(Clone, Debug)]
+pub struct StepContext<'a> {
+    /// Duration of the step, s. More than [`MAX_TIME_STEP`](crate::solver::MAX_TIME_STEP) is cut down to it.
+    pub dt: f32,
+    /// How the springs are integrated.
+    pub method: Method,
+    /// Substeps a step, and levels. [`Method::Explicit`] finds its own number, [`Method::Xpbd`] has no levels.
+    pub effort: &'a SubstepPolicy,
+    /// The most substeps that [`Method::Explicit`] may take.
+    pub max_substeps: u32,
+    /// What the cloth is made of.
+    pub material: Material,
+    /// Gravity, m/s².
+    pub gravity: Vec3A,
+    /// Fixed particles and their way.
+    pub pin_motions: &'a [PinMotion],
+    /// Bodies that anchors are fixed to and that give way. On these there are no tethers.
+    pub mounts: &'a [BodyAttachment],
+    /// Which anchors are fixed to which of them.
+    pub mounted: &'a [AttachedPin],
+    /// Hands that pull at the cloth.
+    pub grabs: &'a [Grab],
+    /// The most that a particle may be faster than what holds the cloth, m/s.
+    pub max_velocity: f32,
+    /// Longest allowed distances to fixed particles. Not for [`Method::Explicit`].
+    pub tethers: Option<&'a Tethers>,
+    /// By how much of its length a tether gives, no unit, beyond what a sheet itself gives. 0.002 to 0.01.
+    pub tether_slack: f32,
+    /// Distance that particles keep from obstacles beyond the cloth's thickness, m.
+    pub margin: f32,
+    /// The most that a particle leaves an obstacle by, or another part of cloth, that it is inside of, m/s.
+    pub max_depenetration_velocity: f32,
+    /// What of the cloth meets itself and other cloths.
+    pub self_collision: SelfCollision,
+    /// Layers that it is in for other cloths, one a bit.
+    pub collision_layers: u32,
+    /// Layers of the other cloths that it meets. Two meet where each is in the other's.
+    pub collision_mask: u32,
+    /// Distance that parts of cloth keep from each other, m.
+    pub self_distance: f32,
+    /// Friction of cloth on cloth, no unit.
+    pub self_friction: f32,
+    /// Obstacles and their way.
+    pub obstacles: &'a [Obstacle],
+    /// Density of the air, kg/m³. Zero for a vacuum.
+    pub fluid_density: f32,
+    /// All winds that may reach the cloth.
+    pub winds: &'a [WindSource],
+    /// Threads that may help with a large cloth. The bits are the same without.
+    pub pool: Option<&'a TaskPool>,
+}
+
+impl StepContext<'_> {
+    /// By how much of its length a tether gives in all, no unit: a sheet may be stretched by its weight.
+    pub fn slack(&self) -> f32 {
+        let longest = self.tethers.map_or(0.0, Tethers::longest);
+        self.tether_slack + longest * self.material.give(self.gravity.length())
+    }
+
+    /// Distance that particles keep from obstacles, m.
+    pub fn contact_distance(&self) -> f32 {
+        self.material.thickness + self.margin
+    }
+}
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepReport {
+    /// Substeps taken.
+    pub substeps: u32,
+    /// Substeps that [`Method::Explicit`] would have needed for the whole stiffness and damping; else those taken.
+    pub needed_substeps: u32,
+    /// Share of the asked stiffness and damping that was used, 0..=1. Below one when [`Method::Explicit`] would have
+    /// needed more than [`StepContext::max_substeps`] substeps for the whole.
+    pub stiffness_scale: f32,
+    /// Contacts in the last substep: of particles with obstacles, and of points, edges and faces with each other. Those of cloths
+    /// that are stepped together count for the first.
+    pub contacts: u32,
+    /// Sum of the external forces and those of the air on all particles, whatever their direction, N.
+    pub steady_force: f32,
+}
+
+impl StepReport {
+    /// Of a step that did nothing.
+    pub(crate) const NOTHING: Self =
+        Self { substeps: 0, needed_substeps: 0, stiffness_scale: 1.0, contacts: 0, steady_force: 0.0 };
+}
