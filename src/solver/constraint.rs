@@ -6,6 +6,8 @@ pub(super) mod bend;
 pub(super) mod bias;
 pub(super) mod braid;
 pub(super) mod curvature;
+#[cfg(test)]
+mod dense;
 pub(super) mod diagonal;
 pub(super) mod face;
 pub mod grab;

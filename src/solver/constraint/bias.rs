@@ -314,3 +314,6 @@ fn pulls_before<S: Simd>(simd: S, row: &[Pulling], pack: usize) -> Pull<S> {
 }
 
 const NOTHING: Pulling = Pulling { push: [[0.0; LANES]; 3], tension: [0.0; LANES], left: [0.0; LANES] };
+
+#[cfg(test)]
+mod tests;

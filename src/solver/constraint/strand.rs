@@ -322,3 +322,6 @@ impl<F> Row<F> {
 fn pulling<S: Simd, F: Wide<S>, L: Laws<S, F>>(simd: S, mu: F) -> F {
     if L::ONLY_PULLS { mu.min(F::splat(simd, 0.0)) } else { mu }
 }
+
+#[cfg(test)]
+mod tests;

@@ -258,3 +258,6 @@ impl Pair {
         between.length() <= self.distance.max(1e-4)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -259,3 +259,6 @@ fn found_between(features: Features, sides: [&Side; 4], points: [u32; 4], reach:
     let pair = Pair { features, points, distance, taper, friction: reach.friction, gap: length, normal };
     found(Found { pair, is_first_of_a: true, face: 0, nearest });
 }
+
+#[cfg(test)]
+mod tests;
