@@ -8,7 +8,7 @@ use bevy::{
     tasks::TaskPool,
 };
 use bevy_drape::solver::{
-    AttachedPin, BodyAttachment, Elasticity, Grab, Material, Method, Obstacle, Particles, PinMotion, Scratch,
+    AttachedPin, BodyAttachment, Elasticity, Grab, Material, Member, Method, Obstacle, Particles, PinMotion, Scratch,
     SelfCollision, StepContext, StepReport, SubstepPolicy, Tethers, Topology, WindSource, step,
 };
 use bevy_drape::{
@@ -47,6 +47,8 @@ pub struct Bed {
     pub gravity: Vec3A,
     pub fluid_density: f32,
     pub pool: Option<Arc<TaskPool>>,
+    /// Its origin from that of the first bed that it is stepped together with, m.
+    pub offset: Vec3A,
     pub scratch: Scratch,
 }
 
@@ -93,6 +95,7 @@ impl Bed {
             gravity: Vec3A::NEG_Y * GRAVITY,
             fluid_density: 1.225,
             pool: None,
+            offset: Vec3A::ZERO,
             scratch: Scratch::default(),
         }
     }
@@ -144,6 +147,12 @@ impl Bed {
 
     /// One step of `dt` seconds.
     pub fn step(&mut self, dt: f32) -> StepReport {
+        let (particles, topology, ctx, scratch) = self.parts(dt);
+        step(particles, topology, &ctx, scratch)
+    }
+
+    /// What goes into a step of `dt` seconds, for which the winds move on.
+    fn parts(&mut self, dt: f32) -> (&mut Particles, &Topology, StepContext<'_>, &mut Scratch) {
         self.winds.iter_mut().for_each(|wind| wind.advance(dt));
         let ctx = StepContext {
             dt,
@@ -171,7 +180,7 @@ impl Bed {
             winds: &self.winds,
             pool: self.pool.as_deref(),
         };
-        step(&mut self.particles, &self.topology, &ctx, &mut self.scratch)
+        (&mut self.particles, &self.topology, ctx, &mut self.scratch)
     }
 
     /// Steps of 1/60 s for about `seconds`.
@@ -190,6 +199,20 @@ impl Bed {
     }
 }
 
+/// Shows beds to `act` as the plugin gives cloths that may touch each other to the solver, for a step of `dt` seconds.
+pub fn together<R>(beds: &mut [Bed], dt: f32, act: impl FnOnce(&mut [Member]) -> R) -> R {
+    let mut parts: Vec<_> = beds.iter_mut().map(|bed| (bed.offset, bed.parts(dt))).collect();
+    let members = parts.iter_mut().map(|(offset, (particles, topology, ctx, scratch))| Member {
+        particles,
+        topology,
+        ctx,
+        scratch,
+        offset: *offset,
+        report: None,
+    });
+    act(&mut members.collect::<Vec<_>>())
+}
+
 /// Root of the mean squared distance between the particles of two cloths, m.
 pub fn rms(a: &Particles, b: &Particles) -> f32 {
     let squares = a.position.iter().zip(&b.position).map(|(p, q)| p.distance_squared(*q));
@@ -200,4 +223,10 @@ pub fn rms(a: &Particles, b: &Particles) -> f32 {
 pub fn bits(particles: &Particles) -> Vec<u32> {
     let values = particles.position.iter().chain(&particles.velocity);
     values.flat_map(|v| v.to_array()).map(f32::to_bits).collect()
+}
+
+/// A number that stands for some bits: the 64-bit FNV-1a hash of their bytes, the same with every Rust and on every machine.
+pub fn digest(bits: impl IntoIterator<Item = u32>) -> u64 {
+    let bytes = bits.into_iter().flat_map(u32::to_le_bytes);
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }

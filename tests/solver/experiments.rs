@@ -1,11 +1,9 @@
 //! The lab's experiments, watched frame by frame.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
-
 use bevy_drape::solver::SelfCollision;
 
 use crate::{
-    bench_bed::bits,
+    bench_bed::{bits, digest},
     scene::{Look, Scene, Settings},
 };
 
@@ -49,11 +47,9 @@ pub fn watch(mut scene: Scene) -> Watched {
 
 /// A number that stands for the bits of all cloths after `frames`.
 pub fn hash(scene: &mut Scene, frames: u32) -> u64 {
-    let mut hasher = DefaultHasher::new();
     for _ in 0..frames {
         scene.lead();
         scene.step(None);
     }
-    scene.cloths.iter().for_each(|cloth| bits(&cloth.particles).hash(&mut hasher));
-    hasher.finish()
+    digest(scene.cloths.iter().flat_map(|cloth| bits(&cloth.particles)))
 }

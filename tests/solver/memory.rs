@@ -1,16 +1,17 @@
 //! A step doesn't allocate, and a cloth keeps little.
 
 use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::solver::Particles;
+use bevy_drape::solver::{Member, Particles, SelfCollision, step, step_together};
 use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothGrip, ClothSprings},
 };
 
 use crate::{
-    bench_bed::{ALL, Bed, springs_in_air},
+    bench_bed::{ALL, Bed, STABLE, springs_in_air, together},
     grabs::hand,
     lattices::hexagons,
+    stages::{self, Stage},
 };
 
 #[test]
@@ -32,6 +33,66 @@ fn a_step_allocates_nothing_once_it_has_run() {
             });
             assert_eq!(info.count_total, 0, "{method:?}: {info:?}");
         }
+    }
+}
+
+/// What `act` allocates in each frame of what is made, with working memory that has seen the same before.
+fn allocations(make: &dyn Fn() -> Stage, act: impl Fn(&mut [Member])) -> Vec<u64> {
+    const FRAMES: u32 = 120;
+    let mut before = make();
+    for frame in 0..FRAMES {
+        before.frame(frame, &act);
+    }
+    let mut again = make();
+    for (bed, used) in again.beds.iter_mut().zip(before.beds) {
+        // With the first look at a surface, its tree is made.
+        (bed.scratch, bed.topology) = (used.scratch, used.topology);
+    }
+    (0..FRAMES)
+        .map(|frame| again.frame(frame, |members| allocation_counter::measure(|| act(members)).count_total))
+        .collect()
+}
+
+/// Steps each cloth by itself.
+fn alone(members: &mut [Member]) {
+    for Member { particles, topology, ctx, scratch, .. } in members {
+        step(particles, topology, ctx, scratch);
+    }
+}
+
+#[test]
+fn what_touches_allocates_nothing_once_it_has_happened() {
+    let mut cases: Vec<(String, Box<dyn Fn() -> Stage>)> =
+        vec![("irregular triangles on obstacles".into(), Box::new(stages::fallen_triangles))];
+    for method in ALL {
+        cases.push((format!("{method:?} on obstacles"), Box::new(move || stages::fallen_grid(method))));
+    }
+    for method in STABLE {
+        cases.push((format!("{method:?} on a body"), Box::new(move || stages::swinging(method))));
+        for of in [SelfCollision::Robust, SelfCollision::Particles] {
+            cases.push((format!("{method:?} in folds, {of:?}"), Box::new(move || stages::folded(method, of))));
+        }
+    }
+    for (name, make) in &cases {
+        let allocated = allocations(make, alone);
+        assert!(allocated.iter().all(|&count| count == 0), "{name}: {allocated:?}");
+    }
+}
+
+#[test]
+fn cloths_that_touch_each_other_allocate_no_more_than_those_that_do_not() {
+    for method in STABLE {
+        let touching = allocations(&|| stages::swinging(method), step_together);
+        // Lists of the members, whatever these do.
+        let mut apart = [
+            Bed::lying(2, springs_in_air(ClothSprings::default())),
+            Bed::lying(2, springs_in_air(ClothSprings::default())),
+        ];
+        let lists = together(&mut apart, 1.0 / 60.0, |members| {
+            step_together(members);
+            allocation_counter::measure(|| step_together(members)).count_total
+        });
+        assert!(touching.iter().all(|&count| count == lists), "{method:?}: {touching:?} for {lists}");
     }
 }
 

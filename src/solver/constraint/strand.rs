@@ -1,6 +1,8 @@
 //! Solves strands exactly: chains of springs, and what bends and shears between them.
 
 pub(crate) mod bend_factors;
+#[cfg(test)]
+mod dense;
 pub(crate) mod diagonal;
 pub(crate) mod grid;
 pub(crate) mod law;

@@ -64,8 +64,91 @@ pub fn nearest(
 
 #[cfg(test)]
 mod tests {
+    use bevy::math::DVec3;
+    use proptest::prelude::*;
+
     use super::*;
     use crate::solver::shape::TriangleMesh;
+
+    /// A closed mesh around the origin whose points are as far away from it as `radii` say, m: an octahedron, each side of
+    /// which is cut into four.
+    fn star(radii: &[f32]) -> TriangleMesh {
+        let ends = [Vec3A::X, Vec3A::Y, Vec3A::NEG_X, Vec3A::NEG_Y, Vec3A::Z, Vec3A::NEG_Z];
+        let mut points = ends.to_vec();
+        let mut middles = Vec::new();
+        let mut triangles = Vec::new();
+        for (i, top) in (0..4_u32).flat_map(|i| [(i, 4_u32), (i, 5)]) {
+            let next = (i + 1) % 4;
+            let corners = if top == 4 { [i, next, top] } else { [next, i, top] };
+            let mut middle = |p: u32, q: u32| {
+                let key = (p.min(q), p.max(q));
+                middles.iter().position(|known| *known == key).map_or_else(
+                    || {
+                        middles.push(key);
+                        points.push((ends[p as usize] + ends[q as usize]).normalize());
+                        points.len() as u32 - 1
+                    },
+                    |at| at as u32 + 6,
+                )
+            };
+            let [a, b, c] = corners;
+            let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+            triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        let points = points.into_iter().zip(radii).map(|(point, &radius)| point * radius).collect();
+        TriangleMesh::new(points, &triangles, true)
+    }
+
+    /// How often a mesh goes around a place: the sum of the solid angles of its triangles, by van Oosterom and Strackee, "The
+    /// Solid Angle of a Plane Triangle" (1983).
+    fn windings(place: Vec3A, mesh: &TriangleMesh) -> f64 {
+        let angle = |triangle: &[u32; 3]| {
+            let [a, b, c]: [DVec3; 3] = triangle.map(|i| (mesh.points[i as usize] - place).as_dvec3());
+            let (l, m, n) = (a.length(), b.length(), c.length());
+            let below = l * m * n + a.dot(b) * n + a.dot(c) * m + b.dot(c) * l;
+            2.0 * a.dot(b.cross(c)).atan2(below)
+        };
+        mesh.triangles().iter().map(angle).sum::<f64>() / (4.0 * core::f64::consts::PI)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn what_a_mesh_goes_around_is_inside(
+            radii in prop::collection::vec(0.3_f32..1.0, 18),
+            places in prop::collection::vec(prop::array::uniform3(-1.0_f32..1.0).prop_map(Vec3A::from), 20),
+        ) {
+            let mesh = star(&radii);
+            for place in places {
+                let windings = windings(place, &mesh);
+                let found = is_inside(place, &mesh.surface, &mesh.places, &mesh.points);
+                prop_assert_eq!(found, windings > 0.5, "{}: {}", place, windings);
+            }
+        }
+
+        #[test]
+        fn no_triangle_is_nearer(
+            radii in prop::collection::vec(0.3_f32..1.0, 18),
+            places in prop::collection::vec(prop::array::uniform3(-1.5_f32..1.5).prop_map(Vec3A::from), 20),
+            farthest in prop_oneof![Just(f32::INFINITY), 0.05_f32..1.0],
+        ) {
+            let mesh = star(&radii);
+            for place in places {
+                let distance = |triangle: &[u32; 3]| {
+                    let corners = triangle.map(|i| mesh.points[i as usize]);
+                    closest_point::place_on_triangle(place, corners).distance(place)
+                };
+                let least = mesh.triangles().iter().map(distance).fold(f32::INFINITY, f32::min);
+                let found = nearest(place, farthest, &mesh.surface, &mesh.places, &mesh.points);
+                prop_assert!(found.is_some() || least > farthest - 1e-5, "{place}: {least} within {farthest}");
+                if let Some((triangle, found)) = found {
+                    prop_assert!((found - least).abs() < 1e-5 && found <= farthest, "{place}: {found} for {least}");
+                    prop_assert!((distance(&mesh.triangles()[triangle]) - found).abs() < 1e-5);
+                }
+            }
+        }
+    }
 
     /// A cube of 1 m around the origin.
     fn cube() -> TriangleMesh {

@@ -172,3 +172,135 @@ impl StrandLanes<'_> {
         place.store(&mut self.position[j]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::{DVec3, Vec3A};
+    use fastrand::Rng;
+    use fearless_simd::dispatch;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::solver::{
+        constraint::strand::dense,
+        layout::simd::{LANES, SimdLevel},
+    };
+
+    /// Threads side by side.
+    struct Strands {
+        position: Vec<Block>,
+        previous: Vec<Block>,
+        inverse_mass: Vec<Lane>,
+        weights: Vec<[Lane; 2]>,
+        rest: Vec<Block>,
+    }
+
+    impl Strands {
+        /// Threads of which some nodes are fixed, and some don't bend.
+        fn new(count: usize, curved: bool, rng: &mut Rng) -> Self {
+            let mut threads = Self {
+                position: vec![Block::default(); count],
+                previous: vec![Block::default(); count],
+                inverse_mass: vec![Lane::default(); count],
+                weights: vec![Default::default(); count],
+                rest: vec![Block::default(); if curved { count } else { 0 }],
+            };
+            for (j, lane) in (0..count).flat_map(|j| (0..LANES).map(move |lane| (j, lane))) {
+                for axis in 0..3 {
+                    threads.position[j][axis][lane] = rng.f32() + if axis == 0 { j as f32 } else { 0.0 };
+                    threads.previous[j][axis][lane] = threads.position[j][axis][lane] + 0.1 * rng.f32();
+                    if curved {
+                        threads.rest[j][axis][lane] = rng.f32() - 0.5;
+                    }
+                }
+                threads.inverse_mass[j][lane] = if rng.u32(0..5) == 0 { 0.0 } else { 0.2 + 2.0 * rng.f32() };
+                if j > 0 && j + 1 < count && rng.u32(0..6) > 0 {
+                    threads.weights[j].iter_mut().for_each(|weights| weights[lane] = 0.5 + rng.f32());
+                }
+            }
+            threads
+        }
+
+        fn places(blocks: &[Block], lane: usize) -> Vec<DVec3> {
+            blocks.iter().map(|[x, y, z]| Vec3A::new(x[lane], y[lane], z[lane]).as_dvec3()).collect()
+        }
+
+        /// Where the nodes of one of them are to be, from (κ D W Dᵀ + 1) lambda = -κ (D x - r).
+        fn expected(&self, lane: usize, rigidity: Scaled) -> Vec<DVec3> {
+            let count = self.position.len();
+            let [position, previous, rest] =
+                [&self.position, &self.previous, &self.rest].map(|b| Self::places(b, lane));
+            let mass = |j: usize| f64::from(self.inverse_mass[j][lane]);
+            let [k, c] = [rigidity.k, rigidity.c].map(f64::from);
+            // The row of D of each node: with nothing where nothing bends.
+            let bend = |j: usize, node: usize| {
+                let [p, q] = self.weights[j].map(|weights| f64::from(weights[lane]));
+                match node + 1 {
+                    at if at == j => p,
+                    at if at == j + 1 => -(p + q),
+                    at if at == j + 2 => q,
+                    _ => 0.0,
+                }
+            };
+            let inner = 1..count - 1;
+            let row = |i: usize| {
+                let entry = |j: usize| {
+                    let sum: f64 = (0..count).map(|node| bend(i, node) * mass(node) * bend(j, node)).sum();
+                    (k + c) * sum + f64::from(u8::from(i == j))
+                };
+                inner.clone().map(entry).collect()
+            };
+            let right = |j: usize| {
+                let sum = |at: &[DVec3]| (0..count).map(|node| at[node] * bend(j, node)).sum::<DVec3>();
+                let at_rest = rest.get(j).copied().unwrap_or(DVec3::ZERO);
+                (sum(&position) - at_rest) * -k - (sum(&position) - sum(&previous)) * c
+            };
+            let lambda = dense::solve(inner.clone().map(row).collect(), inner.clone().map(right).collect());
+            let pull =
+                |node: usize| inner.clone().zip(&lambda).map(|(j, &lambda)| lambda * bend(j, node)).sum::<DVec3>();
+            (0..count).map(|node| position[node] + pull(node) * mass(node)).collect()
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn bends_of_a_thread_are_solved_as_by_their_whole_matrix(
+            seed in any::<u64>(),
+            count in 3_usize..24,
+            stiffness in prop_oneof![Just(0.001_f32), 0.01_f32..10.0],
+            damping in prop_oneof![Just(0.0_f32), 0.01_f32..1.0],
+            curved in any::<bool>(),
+            simd_level in prop_oneof![Just(SimdLevel::Best), Just(SimdLevel::Baseline)],
+        ) {
+            let mut threads = Strands::new(count, curved, &mut Rng::with_seed(seed));
+            let rigidity = Scaled { k: stiffness, c: damping };
+            let expected: Vec<_> = (0..LANES).map(|lane| threads.expected(lane, rigidity)).collect();
+            let mut rows = EliminationRows::default();
+            rows.make_room(count);
+            let mut factors = vec![Factor::default(); count];
+            let Strands { position, previous, inverse_mass, weights, rest } = &mut threads;
+            dispatch!(simd_level.level(), simd => {
+                factorize(simd, count, inverse_mass, weights, rigidity, &mut factors);
+            });
+            let bends = StrandBends { weights, rest, factors: &factors, rigidity };
+            let mut pack = StrandLanes { position, previous, inverse_mass, stride: count };
+            match (damping > 0.0, curved) {
+                (false, false) => dispatch!(simd_level.level(), simd =>
+                    pack.solve_curvature::<_, false, false>(simd, count, bends, &mut rows)),
+                (false, true) => dispatch!(simd_level.level(), simd =>
+                    pack.solve_curvature::<_, false, true>(simd, count, bends, &mut rows)),
+                (true, false) => dispatch!(simd_level.level(), simd =>
+                    pack.solve_curvature::<_, true, false>(simd, count, bends, &mut rows)),
+                (true, true) => dispatch!(simd_level.level(), simd =>
+                    pack.solve_curvature::<_, true, true>(simd, count, bends, &mut rows)),
+            }
+            for (lane, expected) in expected.iter().enumerate() {
+                for (found, expected) in Strands::places(&threads.position, lane).iter().zip(expected) {
+                    prop_assert!(found.distance(*expected) < 5e-3, "thread {lane}: {found} for {expected}");
+                }
+            }
+        }
+    }
+}

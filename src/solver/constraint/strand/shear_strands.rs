@@ -330,3 +330,6 @@ fn pulls_before<S: Simd>(simd: S, row: &[SpringResponse], pack: usize) -> Partic
 }
 
 const NOTHING: SpringResponse = SpringResponse { push: [[0.0; LANES]; 3], tension: [0.0; LANES], left: [0.0; LANES] };
+
+#[cfg(test)]
+mod tests;

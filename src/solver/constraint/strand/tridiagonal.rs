@@ -325,3 +325,6 @@ impl<F> EliminationRow<F> {
 fn pulling<S: Simd, F: Wide<S>, L: StrandLaws<S, F>>(simd: S, mu: F) -> F {
     if L::ONLY_PULLS { mu.min(F::splat(simd, 0.0)) } else { mu }
 }
+
+#[cfg(test)]
+mod tests;

@@ -281,3 +281,6 @@ fn found_between(
     let pair = FeatureContact { features, points, distance, taper, friction: reach.friction, gap: length, normal };
     found(Candidate { pair, is_first_of_a: true, face: 0, nearest });
 }
+
+#[cfg(test)]
+mod tests;

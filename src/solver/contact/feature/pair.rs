@@ -263,3 +263,6 @@ impl FeatureContact {
         between.length() <= self.distance.max(1e-4)
     }
 }
+
+#[cfg(test)]
+mod tests;
