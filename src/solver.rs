@@ -24,8 +24,9 @@ pub mod topology;
 
 pub use crate::solver::{
     input::{
-        AttachedPin, Body, BodyAttachment, BodyDisplacement, BodyImpulse, Grab, GrabTether, Gusts, Method, Obstacle,
-        PinMotion, SelfCollision, StepContext, StepReport, SubstepPolicy, Tether, Tethers, WindRegion, WindSource,
+        AttachedPin, Body, BodyAttachment, BodyDisplacement, BodyImpulse, Grab, GrabTether, Gusts, MAX_TIME_STEP,
+        Method, Obstacle, PinMotion, SelfCollision, StepContext, StepReport, SubstepPolicy, Tether, Tethers,
+        WindRegion, WindSource,
     },
     layout::simd::SimdLevel,
     material::{Elasticity, Material, Moduli, SpringConstants, SpringLaw},
@@ -33,7 +34,7 @@ pub use crate::solver::{
     particles::Particles,
     scratch::Scratch,
     shape::{Ellipsoid, MeshShape, Shape, Solid, TaperedCapsule, TriangleMesh},
-    step::{MAX_TIME_STEP, Member, step, step_together},
+    step::{Member, step, step_together},
     topology::{
         Bend, BendBatch, Face, Grain, Spring, SpringBatch, SpringKind, Topology,
         lattice::{Lattice, StrandSet},

@@ -64,7 +64,7 @@ fn reached(state: &ClothState, dt: f32) -> Option<Aabb3d> {
     let bounds = Aabb3d { min: low, max: high };
     // Far from the world's origin, places are rounded.
     let Cloth { self_collision, self_distance, .. } = state.settings;
-    let distance = state.topology.self_distance(self_collision, self_distance);
+    let distance = self_collision.distance_on(&state.topology, self_distance);
     let margin = distance + GAINED + 1e-6 * origin.abs().max_element();
     (low.is_finite() && high.is_finite()).then(|| bounds.grow(Vec3A::splat(margin)))
 }

@@ -7,9 +7,8 @@ use bevy::math::Vec3A;
 use crate::solver::{
     constraint::unstructured::{bend::element::BendElement, face::FaceStrain},
     input::StepContext,
-    layout::lanes::Lanes,
     material::{Material, Moduli, SpringConstants},
-    particles::Particles,
+    particles::{Particles, lanes::Lanes},
     topology::{Spring, SpringKind, Topology},
 };
 

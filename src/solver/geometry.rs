@@ -3,3 +3,4 @@
 pub(crate) mod bvh;
 pub(crate) mod closest_point;
 pub(crate) mod inside;
+pub(crate) mod intersection;

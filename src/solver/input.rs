@@ -6,7 +6,7 @@ use bevy::{
     tasks::TaskPool,
 };
 
-use crate::solver::material::Material;
+use crate::solver::{material::Material, topology::Topology};
 
 mod body;
 mod grab;
@@ -26,6 +26,17 @@ pub use crate::solver::input::{
     wind::{Gusts, WindRegion, WindSource},
 };
 pub(crate) use crate::solver::input::{substep_policy::ContactRisk, tether::TetherBlock};
+
+/// Distance between balls at the particles that nothing gets through, as a share of the mean edge: of a square cell, a corner is
+/// 0.71 of its side from the middle, and the mean edge, diagonals too, is 1.14 of it.
+const BALL: f32 = 0.65;
+
+/// The largest distance between parts of a cloth, as a multiple of the mean edge.
+const MOST_EDGES: f32 = 4.0;
+
+/// Longest time step that is simulated, s. A longer one is cut down to it: after a stall the cloth falls behind the
+/// clock instead of being thrown about.
+pub const MAX_TIME_STEP: f32 = 0.1;
 
 /// How the springs are integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,10 +64,24 @@ pub enum SelfCollision {
     Robust,
 }
 
+impl SelfCollision {
+    /// Distance that parts of a cloth keep from each other, m, where that of the settings is `distance`: balls at its
+    /// particles are larger, so that nothing gets through between them. No distance is more than some edges long: everything
+    /// would be near everything.
+    pub fn distance_on(self, topology: &Topology, distance: f32) -> f32 {
+        let edge = topology.surface().mean_edge;
+        let least = match self {
+            Self::Particles => BALL * edge,
+            Self::Robust | Self::Off => 0.0,
+        };
+        distance.min(MOST_EDGES * edge).max(least)
+    }
+}
+
 /// Settings and surroundings of one step.
 #[derive(Clone, Debug)]
 pub struct StepContext<'a> {
-    /// Duration of the step, s. More than [`MAX_TIME_STEP`](crate::solver::MAX_TIME_STEP) is cut down to it.
+    /// Duration of the step, s. More than [`MAX_TIME_STEP`](MAX_TIME_STEP) is cut down to it.
     pub dt: f32,
     /// How the springs are integrated.
     pub method: Method,

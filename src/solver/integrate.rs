@@ -6,9 +6,10 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 use crate::solver::{
     input::StepContext,
     layout::{
-        lanes::{Points, Run},
+        points::Points,
         simd::{SimdLevel, Vec3x8, lane},
     },
+    particles::lanes::Run,
 };
 
 /// What moves particles freely during a substep.

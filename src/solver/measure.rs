@@ -4,10 +4,12 @@ use bevy::math::Vec3A;
 
 use crate::solver::{
     constraint::unstructured::{bend::element::BendElement, face::FaceStrain, spring},
-    contact::feature::tangle,
-    geometry::bvh::{
-        bounds::{Bounds, BvhBounds},
-        traversal::Traversal,
+    geometry::{
+        bvh::{
+            bounds::{Bounds, BvhBounds},
+            traversal::Traversal,
+        },
+        intersection::intersect,
     },
     material::Material,
     particles::Particles,
@@ -97,7 +99,7 @@ pub fn intersecting_pairs(particles: &Particles, topology: &Topology) -> usize {
             for t in surface.of_leaf(q).filter(|&t| s < t) {
                 let (one, other) = (surface.triangles[s], surface.triangles[t]);
                 let is_apart = !one.iter().any(|corner| other.contains(corner));
-                count += usize::from(is_apart && tangle::intersect(corners(one), corners(other)));
+                count += usize::from(is_apart && intersect(corners(one), corners(other)));
             }
         }
     });
@@ -122,7 +124,7 @@ pub fn intersecting_pairs_between(
     Traversal::default().between((a, &at), (b, &bt), |p, q| {
         for s in a.of_leaf(p) {
             for t in b.of_leaf(q) {
-                count += usize::from(tangle::intersect(corners(a.triangles[s]), other_corners(b.triangles[t])));
+                count += usize::from(intersect(corners(a.triangles[s]), other_corners(b.triangles[t])));
             }
         }
     });

@@ -6,6 +6,9 @@ use bevy::math::Vec3A;
 
 use crate::solver::{material::Material, topology::Topology};
 
+pub(crate) mod gathered;
+pub(crate) mod lanes;
+
 /// Positions, velocities and masses of all particles of one cloth, one entry a particle in each array.
 ///
 /// Positions are in metres, relative to the cloth's origin.

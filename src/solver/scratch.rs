@@ -12,12 +12,9 @@ use crate::solver::{
     contact::{body::Bodies, broad_phase::BroadPhase, feature::FeatureContacts, mesh::MeshContacts},
     force::wind::Air,
     input::{BodyDisplacement, BodyImpulse},
-    layout::{
-        gathered::GatheredParticles,
-        lanes::{Lanes, Points},
-        simd::SimdLevel,
-    },
+    layout::{points::Points, simd::SimdLevel},
     parallel::grid_substep::WorkerScratch,
+    particles::{gathered::GatheredParticles, lanes::Lanes},
 };
 
 /// Working memory of [`step`](crate::solver::step()). One can serve any number of cloths in turn.

@@ -11,16 +11,18 @@ use crate::solver::{
     },
     contact::{
         self,
-        feature::{self, FeatureContacts},
+        body::Bodies,
+        feature::{self, ClothInStep, FeatureContacts},
         mesh::MeshContacts,
     },
     explicit::{self, Stability},
     force::wind,
     imperfection,
-    input::{ContactRisk, Method, SelfCollision, StepContext, StepReport},
+    input::{ContactRisk, MAX_TIME_STEP, Method, SelfCollision, StepContext, StepReport},
     integrate::{self, Motion, SpeedLimit},
+    layout::simd::SimdLevel,
     parallel::grid_substep,
-    particles::Particles,
+    particles::{Particles, lanes::Lanes},
     scratch::Scratch,
     shape::sharp_features::Sharpness,
     step::substep::Substep,
@@ -28,10 +30,6 @@ use crate::solver::{
 };
 
 mod substep;
-
-/// Longest time step that is simulated, s. A longer one is cut down to it: after a stall the cloth falls behind the
-/// clock instead of being thrown about.
-pub const MAX_TIME_STEP: f32 = 0.1;
 
 /// How often the forces of the air are renewed within a step, Hz. They change more slowly than the springs.
 const AIR_RATE: f32 = 160.0;
@@ -264,11 +262,6 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Whether an obstacle may be touched.
-    pub fn is_near(&self) -> bool {
-        self.substep.is_near
-    }
-
     /// Moves the cloth through the part `span` of the step, its substep `i`, as if it touched nothing.
     fn advance(&mut self, i: u32, span: Range<f32>) {
         let Self { particles, scratch, substep, air_interval, .. } = self;
@@ -317,7 +310,10 @@ impl<'a> Running<'a> {
         let Self { scratch, substep, .. } = self;
         let ctx = substep.ctx;
         if substep.is_near {
-            self.contacts = contact::project(scratch, ctx, span, substep.h);
+            self.contacts = {
+                let Scratch { lanes, near, faces, bodies, simd_level, .. } = &mut **scratch;
+                contact::project(lanes, (near, faces, bodies), ctx, span, substep.h, *simd_level)
+            };
         }
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
         let is_constrained = ctx.method != Method::Explicit || substep.touches || !ctx.grabs.is_empty();
@@ -339,6 +335,48 @@ impl<'a> Running<'a> {
         let steady_force = if substep.is_pushed { steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
         let Stability { needed: needed_substeps, scale: stiffness_scale, .. } = substep.stability;
         StepReport { substeps, needed_substeps, stiffness_scale, contacts, steady_force }
+    }
+}
+
+impl ClothInStep for Running<'_> {
+    fn ctx(&self) -> &StepContext<'_> {
+        self.ctx
+    }
+
+    fn topology(&self) -> &Topology {
+        self.topology
+    }
+
+    fn lanes(&self) -> &Lanes {
+        &self.scratch.lanes
+    }
+
+    fn lanes_mut(&mut self) -> &mut Lanes {
+        &mut self.scratch.lanes
+    }
+
+    fn bodies(&self) -> &Bodies {
+        &self.scratch.bodies
+    }
+
+    fn bodies_mut(&mut self) -> &mut Bodies {
+        &mut self.scratch.bodies
+    }
+
+    fn simd_level(&self) -> SimdLevel {
+        self.scratch.simd_level
+    }
+
+    fn offset(&self) -> Vec3A {
+        self.offset
+    }
+
+    fn longest_edge(&self) -> f32 {
+        self.longest_edge
+    }
+
+    fn is_near(&self) -> bool {
+        self.substep.is_near
     }
 }
 

@@ -7,7 +7,6 @@ use bevy::math::Vec3;
 
 use crate::solver::{
     geometry::bvh::TriangleBvh,
-    input::SelfCollision,
     layout::order::Order,
     topology::{lattice::Lattice, level::Level, strand_pack::StrandPack},
 };
@@ -16,13 +15,6 @@ pub mod lattice;
 pub mod level;
 pub mod strand_pack;
 pub mod structure;
-
-/// Distance between balls at the particles that nothing gets through, as a share of the mean edge: of a square cell, a corner is
-/// 0.71 of its side from the middle, and the mean edge, diagonals too, is 1.14 of it.
-const BALL: f32 = 0.65;
-
-/// The largest distance between parts of a cloth, as a multiple of the mean edge.
-const MOST_EDGES: f32 = 4.0;
 
 /// What a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -201,18 +193,6 @@ impl Topology {
     /// Triangles, corners and edges to be found by what touches them: sorted when that is asked for first.
     pub(crate) fn surface(&self) -> &TriangleBvh {
         self.surface.get_or_init(|| TriangleBvh::new(&self.rest, &self.triangles))
-    }
-
-    /// Distance that parts of the cloth keep from each other, m, where that of the settings is `distance`: balls at its
-    /// particles are larger, so that nothing gets through between them. No distance is more than some edges long: everything
-    /// would be near everything.
-    pub fn self_distance(&self, mode: SelfCollision, distance: f32) -> f32 {
-        let edge = self.surface().mean_edge;
-        let least = match mode {
-            SelfCollision::Particles => BALL * edge,
-            SelfCollision::Robust | SelfCollision::Off => 0.0,
-        };
-        distance.min(MOST_EDGES * edge).max(least)
     }
 
     /// Where the particles stand while a step runs.

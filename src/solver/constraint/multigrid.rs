@@ -23,18 +23,18 @@ use crate::solver::{
         attach::tether::{self, PinPlaces},
         strand::{
             bend_factors::BendFactors,
-            grid::{self, GridStrandSolver, GridView, StrandDirection, StrandScratch},
+            grid::{self, GridStrandSolver, StrandDirection, StrandScratch},
             law::{Scaled, TensionOnly},
             material::StrandMaterial,
         },
     },
     input::{TetherBlock, Tethers},
     layout::{
-        lanes::{Block, Lanes, Points},
         order::{Band, Order},
+        points::{Block, Points},
         simd::{LANES, Lane, SimdLevel, Vec3x8, lane},
     },
-    parallel::grid_substep::WorkerScratch,
+    particles::lanes::{GridView, Lanes},
     topology::level::{Level, LevelPass, LinearWeights, Prolongation, TransferOperator},
 };
 
@@ -94,13 +94,13 @@ impl Levels {
     }
 
     /// Solves all levels, once a substep. Particles of a lattice are moved along with them by [`move_band`](Self::move_band),
-    /// others at once.
+    /// others at once. Strands and `across` are buffers.
     pub fn solve(
         &mut self,
         run: &LevelSolve,
         lanes: &mut Lanes,
         pins: &PinPlaces,
-        WorkerScratch { strand_scratch, across, .. }: &mut WorkerScratch,
+        (strand_scratch, across): (&mut StrandScratch, &mut Points),
     ) {
         let nodes = &mut self.nodes;
         let mut coarser: Option<&LevelNodes> = None;

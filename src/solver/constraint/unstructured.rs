@@ -8,8 +8,9 @@ use crate::solver::{
             spring::BatchLaw,
         },
     },
-    layout::{gathered::GatheredParticles, lanes::Lanes, simd::SimdLevel},
+    layout::simd::SimdLevel,
     material::Material,
+    particles::{gathered::GatheredParticles, lanes::Lanes},
     topology::{SpringBatch, Topology},
 };
 

@@ -15,10 +15,13 @@ use crate::solver::{
     },
     input::{BodyDisplacement, Obstacle, StepContext},
     layout::{
-        lanes::{Block, Lanes, Run},
+        points::Block,
         simd::{SimdLevel, Vec3x8, lane},
     },
-    particles::Particles,
+    particles::{
+        Particles,
+        lanes::{Lanes, Run},
+    },
     shape::{MeshShape, Shape},
 };
 

@@ -8,19 +8,21 @@ use core::ops::Range;
 use bevy::math::Vec3A;
 
 use crate::solver::{
-    contact::feature::{
-        body_motion::PredictedBodyMotion,
-        narrow_phase::Displacements,
-        obstacle::{ClothMotion, ObstaclePoint, ObstacleSearch},
-        pair::{FeatureContact, FeaturePoints},
-        tangle::Tangle,
+    contact::{
+        body::Bodies,
+        feature::{
+            body_motion::PredictedBodyMotion,
+            narrow_phase::Displacements,
+            obstacle::{ClothMotion, ObstaclePoint, ObstacleSearch},
+            pair::{FeatureContact, FeaturePoints},
+            tangle::Tangle,
+        },
     },
     geometry::bvh::{TriangleBvh, bounds::BvhBounds, traversal::Traversal},
     input::{Obstacle, SelfCollision, StepContext},
-    layout::lanes::Lanes,
-    particles::Particles,
+    layout::simd::SimdLevel,
+    particles::{Particles, lanes::Lanes},
     shape::{Shape, sharp_features::Sharpness},
-    step::Running,
     topology::Topology,
 };
 
@@ -125,19 +127,42 @@ pub fn sharpest<'a>(
     (way > 0.0).then_some((sharp, way / (0.5 * topology.surface().mean_edge)))
 }
 
-/// What of a cloth matters here.
-impl Running<'_> {
+/// What contact by features reads and moves of a cloth within its step.
+pub(crate) trait ClothInStep {
+    /// What surrounds the cloth.
+    fn ctx(&self) -> &StepContext<'_>;
+    /// What is connected to what.
+    fn topology(&self) -> &Topology;
+    /// Its particles.
+    fn lanes(&self) -> &Lanes;
+    /// The same, to be moved.
+    fn lanes_mut(&mut self) -> &mut Lanes;
+    /// The bodies among its obstacles.
+    fn bodies(&self) -> &Bodies;
+    /// The same, to be pushed.
+    fn bodies_mut(&mut self) -> &mut Bodies;
+    /// Instructions that it is stepped with.
+    fn simd_level(&self) -> SimdLevel;
+    /// Its origin from that of the first cloth, m.
+    fn offset(&self) -> Vec3A;
+    /// Length that its longest edge is taken to have at obstacles, m.
+    fn longest_edge(&self) -> f32;
+    /// Whether an obstacle may be touched.
+    fn is_near(&self) -> bool;
+
+    /// Whether it meets itself or other cloths.
     fn collides(&self) -> bool {
-        self.ctx.self_collision != SelfCollision::Off
+        self.ctx().self_collision != SelfCollision::Off
     }
 
-    /// Distance that the cloth keeps from cloth, m.
+    /// Distance that it keeps from cloth, m.
     fn self_distance(&self, mode: SelfCollision) -> f32 {
-        self.topology.self_distance(mode, self.ctx.self_distance)
+        mode.distance_on(self.topology(), self.ctx().self_distance)
     }
 
+    /// Its triangles.
     fn surface(&self) -> &TriangleBvh {
-        self.topology.surface()
+        self.topology().surface()
     }
 }
 
@@ -172,10 +197,10 @@ pub struct FeatureContacts {
 
 impl FeatureContacts {
     /// Begins a step: nothing is known yet. Returns whether there may be anything to do.
-    pub fn begin(&mut self, cloths: &[Running]) -> bool {
+    pub fn begin(&mut self, cloths: &[impl ClothInStep]) -> bool {
         self.is_begun = false;
         self.forget();
-        let mut is_needed = cloths.iter().any(Running::collides);
+        let mut is_needed = cloths.iter().any(ClothInStep::collides);
         for (number, cloth) in cloths.iter().enumerate() {
             is_needed |= cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
         }
@@ -188,7 +213,7 @@ impl FeatureContacts {
     }
 
     /// Looks for pairs in what is left of a step of `dt` seconds, of which the share `now` is over, if it is time to.
-    fn search(&mut self, cloths: &[Running], span: Range<f32>, dt: f32) {
+    fn search(&mut self, cloths: &[impl ClothInStep], span: Range<f32>, dt: f32) {
         self.take_places(cloths);
         let is_known = self.is_begun && span.end <= self.searched.end && self.tangles.is_empty();
         if is_known && !self.has_come_off(span.start) && !self.has_body_come_off(cloths, span.start) {
@@ -204,7 +229,7 @@ impl FeatureContacts {
         self.body_ways.clear();
         self.is_tangled.clear();
         self.is_tangled.resize(self.start.len(), false);
-        if cloths.iter().any(Running::collides) {
+        if cloths.iter().any(ClothInStep::collides) {
             self.search_cloths(cloths);
         }
         for (number, cloth) in cloths.iter().enumerate() {
@@ -217,7 +242,7 @@ impl FeatureContacts {
             let (first, total) = (self.first[number], self.start.len());
             let (slack, span) = (self.slack[number], self.searched.clone());
             let at = ClothMotion { cloth, number, first, total, ways, slack, span, dt };
-            for i in 0..cloth.ctx.obstacles.len() {
+            for i in 0..cloth.ctx().obstacles.len() {
                 self.at_obstacle.search(&at, i, &mut self.walk, (&mut self.fixed, &mut self.pairs));
             }
         }
@@ -229,7 +254,7 @@ impl FeatureContacts {
     }
 
     /// Keeps where particles were when the substep began, for a search, and reads their velocities, as ways.
-    fn take_velocities(&mut self, cloths: &[Running]) {
+    fn take_velocities(&mut self, cloths: &[impl ClothInStep]) {
         let count = self.particle_count();
         self.start.clear();
         self.start.extend_from_slice(&self.points.previous[..count]);
@@ -237,10 +262,9 @@ impl FeatureContacts {
         self.points.inverse_mass.clear();
         for (i, cloth) in cloths.iter().enumerate() {
             let particles = self.particles(i);
-            let Lanes { order, velocity, .. } = &cloth.scratch.lanes;
-            velocity.store(*order, &mut self.way[particles.clone()], cloth.scratch.simd_level);
-            let masses =
-                (0..particles.len() as u32).map(|particle| cloth.scratch.lanes.inverse_mass(order.slot(particle)));
+            let Lanes { order, velocity, .. } = &cloth.lanes();
+            velocity.store(*order, &mut self.way[particles.clone()], cloth.simd_level());
+            let masses = (0..particles.len() as u32).map(|particle| cloth.lanes().inverse_mass(order.slot(particle)));
             self.points.inverse_mass.extend(masses);
         }
     }
@@ -249,13 +273,13 @@ impl FeatureContacts {
     /// more is near their ways, and within the length of an edge that is little.
     ///
     /// Sets by how much particles may come off their ways until then, too.
-    fn horizon(&mut self, cloths: &[Running], span: Range<f32>, dt: f32) -> f32 {
+    fn horizon(&mut self, cloths: &[impl ClothInStep], span: Range<f32>, dt: f32) -> f32 {
         let mean = self.way.iter().sum::<Vec3A>() / self.way.len().max(1) as f32;
         let mut fastest = self.way.iter().map(|velocity| velocity.distance_squared(mean)).fold(0.0, f32::max).sqrt();
         let mut edge = f32::INFINITY;
         for cloth in cloths {
             edge = edge.min(cloth.surface().mean_edge);
-            for obstacle in cloth.ctx.obstacles {
+            for obstacle in cloth.ctx().obstacles {
                 let speed = (obstacle.end.translation - obstacle.start.translation) / dt;
                 fastest = fastest.max(speed.distance(mean));
             }
@@ -266,22 +290,22 @@ impl FeatureContacts {
         let needed = SLACK_AT_REST + SLACK_OF_WAY * fastest * left;
         self.slack.clear();
         self.slack.extend(cloths.iter().map(|cloth| {
-            let fall = 0.5 * cloth.ctx.gravity.length() * left * left;
+            let fall = 0.5 * cloth.ctx().gravity.length() * left * left;
             (needed + FALL * fall).min(SLACK * cloth.surface().mean_edge)
         }));
         end
     }
 
     /// Works out how far all particles will come within the time that the search is for.
-    fn take_ways(&mut self, cloths: &[Running], dt: f32) {
+    fn take_ways(&mut self, cloths: &[impl ClothInStep], dt: f32) {
         let share = self.searched.end - self.searched.start;
         let left = share * dt;
         for (number, cloth) in cloths.iter().enumerate() {
             let particles = self.particles(number);
-            let fall = cloth.ctx.gravity * (0.5 * FALL * left * left);
+            let fall = cloth.ctx().gravity * (0.5 * FALL * left * left);
             let way = &mut self.way[particles];
             way.iter_mut().for_each(|way| *way = *way * left + fall);
-            for anchor in cloth.ctx.pin_motions {
+            for anchor in cloth.ctx().pin_motions {
                 way[anchor.particle as usize] = (anchor.end - anchor.start) * share;
             }
         }
@@ -289,17 +313,17 @@ impl FeatureContacts {
 
     /// Keeps features apart within the part `span` (0..=1) of the step, a substep of `h` seconds. Returns the number of
     /// pairs that touched.
-    pub fn solve(&mut self, cloths: &mut [Running], span: Range<f32>, h: f32, dt: f32) -> u32 {
+    pub fn solve(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, h: f32, dt: f32) -> u32 {
         self.search(cloths, span.clone(), dt);
         let mut touched = 0;
         if !(self.pairs.is_empty() && self.tangles.is_empty()) {
             self.lead_fixed(cloths, span.clone());
             self.points.has_parted = false;
-            let most_parted = cloths.iter().map(|cloth| cloth.ctx.max_depenetration_velocity).fold(0.0, f32::max) * h;
+            let most_parted = cloths.iter().map(|cloth| cloth.ctx().max_depenetration_velocity).fold(0.0, f32::max) * h;
             for tangle in &self.tangles {
                 tangle.solve(&mut self.points, most_parted);
             }
-            touched = match cloths.iter().any(|cloth| cloth.scratch.bodies.is_any()) {
+            touched = match cloths.iter().any(|cloth| cloth.bodies().is_any()) {
                 true => self.solve_pairs_on_bodies(cloths, span.clone(), most_parted),
                 false => self.solve_pairs(most_parted),
             };

@@ -24,9 +24,10 @@ use crate::solver::{
     geometry::bvh::bounds::BvhBounds,
     input::StepContext,
     layout::{
-        lanes::{Block, Run},
+        points::Block,
         simd::{LANES, Lane, Vec3x8, lane},
     },
+    particles::lanes::Run,
     shape::{MeshShape, TriangleMesh, solid::field::SignedDistance},
 };
 
@@ -145,7 +146,7 @@ impl MeshContacts {
                 ([&**then, &**now], &*places)
             }
         };
-        let dt = ctx.dt.min(crate::solver::step::MAX_TIME_STEP);
+        let dt = ctx.dt.min(crate::solver::input::MAX_TIME_STEP);
         let [_, end] = bodies.poses_ahead(ctx, obstacle, span.start..1.0, dt);
         MeshDistanceQuery {
             mesh,

@@ -8,8 +8,8 @@ use fearless_simd::{dispatch, f32x8, mask32x8, prelude::*};
 use crate::solver::{
     contact::{
         body::Bodies,
-        broad_phase::{CandidateRange, STRETCH},
-        mesh,
+        broad_phase::{BroadPhase, CandidateRange, STRETCH},
+        mesh::{self, MeshContacts},
         particle::{
             ccd::ObstacleSweep,
             frame::{MovingFrame, ObstacleFrame, RotatedFrame, TranslatedFrame},
@@ -19,10 +19,10 @@ use crate::solver::{
     },
     input::StepContext,
     layout::{
-        lanes::{Block, Run},
+        points::Block,
         simd::{SimdLevel, Vec3x8, lane},
     },
-    scratch::Scratch,
+    particles::lanes::{Lanes, Run},
     shape::{Shape, Solid},
 };
 
@@ -35,9 +35,15 @@ pub(crate) use crate::solver::contact::particle::query::DistanceQuery;
 
 /// Projects all free particles out of all obstacles within the part `span` (0..=1) of the step, a substep of `h` seconds.
 /// Returns the number of contacts.
-pub(crate) fn project(scratch: &mut Scratch, ctx: &StepContext, span: Range<f32>, h: f32) -> u32 {
-    let Scratch { lanes, near, faces: known, bodies, simd_level, .. } = scratch;
-    near.follow(lanes, ctx, span.clone(), bodies, *simd_level);
+pub(crate) fn project(
+    lanes: &mut Lanes,
+    (near, known, bodies): (&mut BroadPhase, &mut [MeshContacts], &mut Bodies),
+    ctx: &StepContext,
+    span: Range<f32>,
+    h: f32,
+    simd_level: SimdLevel,
+) -> u32 {
+    near.follow(lanes, ctx, span.clone(), bodies, simd_level);
     let mut run = lanes.whole();
     let mut contacts = 0;
     for number in 0..near.obstacles.len() {
@@ -46,8 +52,7 @@ pub(crate) fn project(scratch: &mut Scratch, ctx: &StepContext, span: Range<f32>
         let poses @ [start, end] = bodies.poses(ctx, obstacle, span.clone());
         let passage = ObstacleSweep::new(it, poses, ctx, h);
         let stretches = near.stretches(number);
-        let mut past =
-            ParticleProjector { passage, obstacle, bodies, run: &mut run, stretches, simd_level: *simd_level };
+        let mut past = ParticleProjector { passage, obstacle, bodies, run: &mut run, stretches, simd_level };
         contacts += match &it.shape {
             Shape::Solid(solid) => {
                 let mut solid = *solid;

@@ -2,15 +2,13 @@
 
 use bevy::math::Vec3A;
 
-use crate::solver::{
-    contact::feature::tangle,
-    geometry::{
-        bvh::{
-            TriangleBvh,
-            bounds::{Bounds, BvhBounds},
-        },
-        closest_point,
+use crate::solver::geometry::{
+    bvh::{
+        TriangleBvh,
+        bounds::{Bounds, BvhBounds},
     },
+    closest_point,
+    intersection::pierces,
 };
 
 /// Whether a place is inside of a closed mesh: a way out of it goes through an odd number of triangles.
@@ -27,7 +25,7 @@ pub fn is_inside(place: Vec3A, surface: &TriangleBvh, places: &BvhBounds, points
         |bounds| bounds.is_met_by([place, place + way]),
         |triangle| {
             let corners = surface.triangles[triangle].map(|i| points[i as usize]);
-            crossings += usize::from(tangle::pierces([place, place + way], corners).is_some());
+            crossings += usize::from(pierces([place, place + way], corners).is_some());
         },
     );
     crossings % 2 == 1

@@ -61,7 +61,7 @@ impl Order {
         if self.rows == 1 { particle } else { self.slot_at(particle / columns, particle % columns) }
     }
 
-    /// Number of places in [`Lanes::row_masses`](crate::solver::layout::lanes::Lanes).
+    /// Number of places in [`Lanes::row_masses`](crate::solver::particles::lanes::Lanes).
     pub fn row_mass_count(self) -> usize {
         self.bands().map(|band| band.row_masses().len()).sum()
     }
@@ -104,7 +104,7 @@ impl Band {
         self.first * packs..(self.first + self.rows) * packs
     }
 
-    /// Places in [`Lanes::row_masses`](crate::solver::layout::lanes::Lanes).
+    /// Places in [`Lanes::row_masses`](crate::solver::particles::lanes::Lanes).
     pub fn row_masses(self) -> Range<usize> {
         // What isn't in rows and columns has none.
         let nodes = if self.order.rows > 1 { self.order.pack_count() * LANES } else { 0 };

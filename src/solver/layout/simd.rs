@@ -7,7 +7,7 @@ use core::ops::{Add, Mul, Sub};
 
 use fearless_simd::{f32x8, f32x16, prelude::*};
 
-use crate::solver::layout::lanes::Block;
+use crate::solver::layout::points::Block;
 
 /// Particles in a block.
 pub const LANES: usize = 8;

@@ -21,12 +21,15 @@ use crate::solver::{
     input::TetherBlock,
     integrate::{self, Finish, Motion},
     layout::{
-        lanes::{Lanes, Points, Run},
         order::{Band, Order},
+        points::Points,
         simd::SimdLevel,
     },
     parallel::phases::{self, Phase},
-    particles::Particles,
+    particles::{
+        Particles,
+        lanes::{Lanes, Run},
+    },
 };
 
 /// Particles from which on it pays: below, waking another thread takes as long as the work.

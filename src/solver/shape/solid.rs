@@ -11,8 +11,8 @@ use bevy::{
 mod ellipsoid;
 pub(crate) mod field;
 
-pub use crate::solver::shape::solid::ellipsoid::Ellipsoid;
 pub(crate) use crate::solver::shape::solid::field::{SignedDistance, SignedDistanceField};
+pub use ellipsoid::Ellipsoid;
 
 /// A solid whose signed distance has a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]

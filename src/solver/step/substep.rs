@@ -20,9 +20,9 @@ use crate::solver::{
     force::wind,
     input::{Method, StepContext, Tethers},
     integrate::{self, Finish, Motion, SpeedLimit},
-    layout::lanes::{Points, Run},
+    layout::points::Points,
     parallel::grid_substep::{self, SharedStep, WorkerScratch},
-    particles::Particles,
+    particles::{Particles, lanes::Run},
     scratch::Scratch,
     topology::{Topology, lattice::Lattice, level::LevelPass},
 };
@@ -130,7 +130,7 @@ impl Substep<'_> {
         let run = self.levels(scratch);
         if let Some(run) = &run {
             let Scratch { lanes, bench, pins, levels, .. } = scratch;
-            levels.solve(run, lanes, pins, bench);
+            levels.solve(run, lanes, pins, (&mut bench.strand_scratch, &mut bench.across));
         }
         let yarn = StrandMaterial::new(&self.ctx.material, self.h);
         if let Some((pool, lattice)) = self.helpers {

@@ -18,7 +18,8 @@ use bevy::math::{Quat, Vec3A};
 use crate::solver::{
     constraint::attach::body::combined::CombinedBody,
     input::{Body, BodyDisplacement, BodyImpulse, PinMotion, StepContext},
-    layout::lanes::{Lanes, Points},
+    layout::points::Points,
+    particles::lanes::Lanes,
     topology::Topology,
 };
 

@@ -25,11 +25,8 @@ use bevy::math::Vec3A;
 use crate::solver::{
     constraint::attach::tether,
     input::{Grab, GrabTether},
-    layout::{
-        lanes::{Lanes, Points},
-        order::Order,
-        simd::LANES,
-    },
+    layout::{order::Order, points::Points, simd::LANES},
+    particles::lanes::Lanes,
 };
 
 impl Grab {

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3A;
 
-use crate::solver::{input::PinMotion, layout::lanes::Lanes};
+use crate::solver::{input::PinMotion, particles::lanes::Lanes};
 
 /// Puts every anchored particle where its pin is at the fraction `end` (0..=1) of a step of `dt` seconds.
 pub(crate) fn advance(lanes: &mut Lanes, pin_motions: &[PinMotion], end: f32, dt: f32) {

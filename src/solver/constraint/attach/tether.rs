@@ -12,9 +12,10 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 use crate::solver::{
     input::{TetherBlock, Tethers},
     layout::{
-        lanes::{Block, Lanes},
+        points::Block,
         simd::{Lane, SimdLevel, Vec3x8, lane},
     },
+    particles::lanes::Lanes,
 };
 
 /// Where the pins of tethers are, m.

@@ -9,9 +9,10 @@ use crate::solver::{
         pentadiagonal::{self, Factor},
     },
     layout::{
-        lanes::{Block, Lanes},
+        points::Block,
         simd::{LANES, SHORTEST, SimdLevel, Vec3x8},
     },
+    particles::lanes::Lanes,
     topology::lattice::{Lattice, RestCurvature, StrandSet},
 };
 

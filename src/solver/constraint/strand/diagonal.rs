@@ -20,18 +20,18 @@ use crate::solver::{
     constraint::{
         strand::{
             bend_factors::BendFactors,
-            grid::GridView,
             law::Scaled,
             shear_strands::{ShearScratch, ShearStrands},
         },
-        unstructured::spring::{End, solve_abreast},
+        unstructured::spring::solve_abreast,
     },
     layout::{
-        lanes::Block,
         order::Band,
+        points::Block,
         simd::{Lane, SimdLevel, Vec3x8, lane},
     },
     material::{Elasticity, Material, SpringConstants},
+    particles::{gathered::End, lanes::GridView},
     topology::{SpringKind, lattice::Lattice},
 };
 

@@ -17,35 +17,13 @@ use crate::solver::{
     },
     input::PinMotion,
     layout::{
-        lanes::Block,
         order::{Band, Order},
+        points::Block,
         simd::{LANES, Lane, SimdLevel, Wide, lane, transpose},
     },
+    particles::lanes::GridView,
     topology::lattice::{Lattice, StrandSet},
 };
-
-/// The particles of a lattice during a substep.
-pub(crate) struct GridView<'a> {
-    pub position: &'a mut [Block],
-    /// Positions before the substep; read only where springs are damped.
-    pub previous: &'a [Block],
-    pub inverse_mass: &'a [Lane],
-    /// The same, as [`masses_along_rows`] gives them.
-    pub row_masses: &'a [Lane],
-}
-
-impl GridView<'_> {
-    /// What is in a band of the whole lattice.
-    pub fn band(&mut self, band: Band) -> GridView<'_> {
-        let blocks = band.blocks();
-        GridView {
-            position: &mut self.position[blocks.clone()],
-            previous: &self.previous[blocks.clone()],
-            inverse_mass: &self.inverse_mass[blocks],
-            row_masses: &self.row_masses[band.row_masses()],
-        }
-    }
-}
 
 /// Buffers for threads that are being solved.
 #[derive(Clone, Debug, Default)]

@@ -9,10 +9,8 @@ use crate::solver::{
         material::StrandMaterial,
         tridiagonal::{EliminationRows, StrandLanes, StrandSprings},
     },
-    layout::{
-        gathered::GatheredParticles,
-        simd::{SimdLevel, Vec3x8, lane},
-    },
+    layout::simd::{SimdLevel, Vec3x8, lane},
+    particles::gathered::GatheredParticles,
     topology::strand_pack::StrandPack,
 };
 

@@ -23,7 +23,7 @@ use crate::solver::{
         tridiagonal::{EliminationRows, StrandLanes},
     },
     layout::{
-        lanes::Block,
+        points::Block,
         simd::{Lane, Vec3x8, lane},
     },
 };

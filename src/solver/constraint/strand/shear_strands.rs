@@ -18,14 +18,12 @@
 use fearless_simd::{f32x8, prelude::*};
 
 use crate::solver::{
-    constraint::{
-        strand::{grid::GridView, tridiagonal::EliminationRow},
-        unstructured::spring::End,
-    },
+    constraint::strand::tridiagonal::EliminationRow,
     layout::{
-        lanes::Block,
+        points::Block,
         simd::{LANES, Lane, SHORTEST, Vec3x8, lane},
     },
+    particles::{gathered::End, lanes::GridView},
 };
 
 /// Buffers for strands that are being solved.

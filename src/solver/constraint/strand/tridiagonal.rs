@@ -35,12 +35,13 @@ use fearless_simd::prelude::*;
 use crate::solver::{
     constraint::{
         strand::law::{Scaled, StrandLaws, WideSpringLaw},
-        unstructured::spring::{End, solve_abreast},
+        unstructured::spring::solve_abreast,
     },
     layout::{
-        lanes::Block,
+        points::Block,
         simd::{Lane, SHORTEST, Vec3Wide, Wide},
     },
+    particles::gathered::End,
 };
 
 /// Eight threads side by side, node after node; or two times eight, those of the second pack after all of the first.

@@ -34,8 +34,9 @@ use crate::solver::{
         element8::pull_batch,
         stages::{ChebyshevBuffers, Stages},
     },
-    layout::{gathered::GatheredParticles, lanes::Lanes, simd::SimdLevel},
+    layout::simd::SimdLevel,
     material::Material,
+    particles::{gathered::GatheredParticles, lanes::Lanes},
     topology::Topology,
 };
 

@@ -22,11 +22,11 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 use crate::solver::{
     constraint::strand::law::DirectionModuli,
     layout::{
-        gathered::GatheredParticles,
-        lanes::apart,
+        points::apart,
         simd::{LANES, SHORTEST, SimdLevel, Vec3x8, lane},
     },
     material::{Moduli, SpringConstants, SpringLaw},
+    particles::gathered::GatheredParticles,
     topology::{Face, Grain},
 };
 

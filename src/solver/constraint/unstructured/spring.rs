@@ -18,22 +18,16 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 use crate::solver::{
     constraint::strand::law::{DirectionModuli, GatherLaws, Scaled, WideSpringLaw},
     layout::{
-        gathered::GatheredParticles,
-        lanes::{Block, Lanes},
+        points::Block,
         simd::{LANES, Lane, SHORTEST, SimdLevel, Vec3Wide, Vec3x8, Wide, lane},
     },
     material::{Elasticity, Material},
+    particles::{
+        gathered::{End, GatheredParticles},
+        lanes::Lanes,
+    },
     topology::{Spring, SpringBatch, SpringKind},
 };
-
-/// One end of springs side by side.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct End<F> {
-    pub position: Vec3Wide<F>,
-    /// Position before the substep; read only where springs are damped.
-    pub previous: Vec3Wide<F>,
-    pub inverse_mass: F,
-}
 
 /// Solves springs side by side that share no particle, and returns where their ends are moved to. A spring with a rest
 /// length of zero isn't there.

@@ -2,24 +2,23 @@
 
 use crate::solver::{
     contact::feature::{
-        FeatureContacts, meet,
+        ClothInStep, FeatureContacts, meet,
         narrow_phase::{self, ContactSide, Displacements, QueryMargin},
         tangle,
     },
     geometry::bvh::bounds::BvhBounds,
     input::SelfCollision,
-    step::Running,
 };
 
 impl FeatureContacts {
     /// Looks for pairs between cloths, and between parts of one.
-    pub(crate) fn search_cloths(&mut self, cloths: &[Running]) {
+    pub(crate) fn search_cloths(&mut self, cloths: &[impl ClothInStep]) {
         self.places.resize_with(cloths.len().max(self.places.len()), BvhBounds::default);
         for (i, cloth) in cloths.iter().enumerate() {
             let particles = self.first[i] as usize..self.first[i + 1] as usize;
             let (start, way) = (&self.start[particles.clone()], &self.way[particles]);
             // With a ball against a robust cloth, the larger distance counts.
-            let distance = cloth.self_distance(cloth.ctx.self_collision);
+            let distance = cloth.self_distance(cloth.ctx().self_collision);
             let margin = 0.5 * distance + self.slack[i];
             let ways = Displacements { position: start, way };
             let corners = |triangle: [u32; 3]| triangle.map(|i| start[i as usize]);
@@ -28,7 +27,7 @@ impl FeatureContacts {
         }
         for i in 0..cloths.len() {
             for j in i..cloths.len() {
-                if !meet(cloths[i].ctx, cloths[j].ctx) {
+                if !meet(cloths[i].ctx(), cloths[j].ctx()) {
                     continue;
                 }
                 if i != j && !self.places[i].whole().meets(&self.places[j].whole()) {
@@ -39,7 +38,7 @@ impl FeatureContacts {
         }
     }
 
-    fn search_between(&mut self, cloths: &[Running], i: usize, j: usize) {
+    fn search_between(&mut self, cloths: &[impl ClothInStep], i: usize, j: usize) {
         let Self { first, start, way, places, walk, leaves, pairs, is_tangled, tangles, slack, .. } = self;
         let side = |i: usize| {
             let particles = first[i] as usize..first[i + 1] as usize;
@@ -60,12 +59,12 @@ impl FeatureContacts {
             false => walk.between((a.surface, a.places), (b.surface, b.places), |p, q| leaves.push((p, q))),
         }
         // The more careful of the two ways.
-        let mode = cloths[i].ctx.self_collision.max(cloths[j].ctx.self_collision);
+        let mode = cloths[i].ctx().self_collision.max(cloths[j].ctx().self_collision);
         let reach = QueryMargin {
             distance: 0.5 * (cloths[i].self_distance(mode) + cloths[j].self_distance(mode)),
             slack: slack[i] + slack[j],
-            friction: 0.5 * (cloths[i].ctx.self_friction + cloths[j].ctx.self_friction),
-            rest: (i == j).then_some(&*cloths[i].topology.rest),
+            friction: 0.5 * (cloths[i].ctx().self_friction + cloths[j].ctx().self_friction),
+            rest: (i == j).then_some(&*cloths[i].topology().rest),
         };
         for &(p, q) in &*leaves {
             if mode == SelfCollision::Particles {

@@ -5,12 +5,14 @@ use bevy::math::{Vec3, Vec3A};
 use crate::solver::{
     contact::feature::{
         pair::{ClosestPoints, FeatureContact, Features},
-        tangle,
     },
-    geometry::bvh::{
-        TriangleBvh,
-        bounds::{Bounds, BvhBounds},
-        edges_of,
+    geometry::{
+        bvh::{
+            TriangleBvh,
+            bounds::{Bounds, BvhBounds},
+            edges_of,
+        },
+        intersection::pierces,
     },
 };
 
@@ -171,7 +173,7 @@ pub fn tips_through((a, s): (&ContactSide, usize), (b, t): (&ContactSide, usize)
     let edges = edges_of(b.surface.triangles[t]).into_iter().zip(b.surface.owned[t].edges);
     edges.filter(|&(_, sharpness)| sharpness > b.sharper_than).filter_map(move |([p, q], _)| {
         let (from, to) = (b.place(p), b.place(q));
-        let share = tangle::pierces([from, to], triangle)?;
+        let share = pierces([from, to], triangle)?;
         let (tip, beyond) = if share < 0.5 { (p, share) } else { (q, 1.0 - share) };
         (beyond * from.distance(to) <= farthest).then_some(tip)
     })

@@ -6,6 +6,7 @@ use bevy::math::{Isometry3d, Vec3A};
 
 use crate::solver::{
     contact::feature::{
+        ClothInStep,
         narrow_phase::{self, Candidate, ContactSide, Displacements, QueryMargin},
         obstacle_geometry::{FaceStrain, ObstacleGeometry},
         pair::{FeatureContact, Features},
@@ -21,12 +22,11 @@ use crate::solver::{
     },
     input::StepContext,
     shape::{MeshShape, Shape, Solid, sharp_features::SharpFeatures},
-    step::Running,
 };
 
 /// A cloth on its way.
-pub struct ClothMotion<'a> {
-    pub cloth: &'a Running<'a>,
+pub(crate) struct ClothMotion<'a, C> {
+    pub cloth: &'a C,
     /// Its number among those that are stepped together.
     pub number: usize,
     /// Number of its first particle, and of all particles.
@@ -41,15 +41,15 @@ pub struct ClothMotion<'a> {
     pub dt: f32,
 }
 
-impl ClothMotion<'_> {
+impl<C: ClothInStep> ClothMotion<'_, C> {
     /// Poses of obstacle `i` now, and when the search ends.
     fn poses(&self, i: usize) -> [Isometry3d; 2] {
-        self.cloth.scratch.bodies.poses_ahead(self.cloth.ctx, i, self.span.clone(), self.dt)
+        self.cloth.bodies().poses_ahead(self.cloth.ctx(), i, self.span.clone(), self.dt)
     }
 
     /// By how much the cloth and obstacle `i` may come off their ways together, m.
     fn slack(&self, i: usize) -> f32 {
-        if self.cloth.ctx.obstacles[i].body.is_some() { 2.0 * self.slack } else { self.slack }
+        if self.cloth.ctx().obstacles[i].body.is_some() { 2.0 * self.slack } else { self.slack }
     }
 }
 
@@ -84,12 +84,12 @@ pub struct ObstacleSearch {
 impl ObstacleSearch {
     /// Whether triangles and edges of a cloth, number `number` of those that are stepped together, may meet anything that its
     /// particles don't.
-    pub fn is_needed(&mut self, number: usize, cloth: &Running) -> bool {
+    pub fn is_needed(&mut self, number: usize, cloth: &impl ClothInStep) -> bool {
         let mut is_needed = false;
-        for (i, obstacle) in cloth.ctx.obstacles.iter().enumerate() {
+        for (i, obstacle) in cloth.ctx().obstacles.iter().enumerate() {
             is_needed |= match &obstacle.shape {
                 Shape::Solid(solid) => {
-                    let tightness = tightness(obstacle, cloth.longest_edge, cloth.ctx);
+                    let tightness = tightness(obstacle, cloth.longest_edge(), cloth.ctx());
                     !self.outlines.draw(number, i, solid, tightness).points.is_empty()
                 }
                 Shape::Mesh(MeshShape { mesh, .. }) => mesh.surface.has_sharper_than(sharpness(cloth)),
@@ -106,14 +106,14 @@ impl ObstacleSearch {
     /// Adds what of a cloth and obstacle `i` of it may meet.
     pub fn search(
         &mut self,
-        at: &ClothMotion,
+        at: &ClothMotion<impl ClothInStep>,
         i: usize,
         walk: &mut Traversal,
         (fixed, pairs): (&mut Vec<ObstaclePoint>, &mut Vec<FeatureContact>),
     ) {
-        let (cloth, obstacle) = (at.cloth, &at.cloth.ctx.obstacles[i]);
+        let (cloth, obstacle) = (at.cloth, &at.cloth.ctx().obstacles[i]);
         let surface = cloth.surface();
-        let distance = distance_to(obstacle, cloth.ctx);
+        let distance = distance_to(obstacle, cloth.ctx());
         let Self { position, way, places, leaves, found, is_inside, number, deformed, outlines, pierced } = self;
         let Some(target) = ObstacleGeometry::of(obstacle, &at.span, deformed, || outlines.of(at.number, i)) else {
             return;
@@ -137,7 +137,7 @@ impl ObstacleSearch {
             has_faces: false,
             radii: target.radii,
         };
-        let friction = cloth.ctx.material.friction * obstacle.friction;
+        let friction = cloth.ctx().material.friction * obstacle.friction;
         let reach = QueryMargin { distance, slack, friction, rest: None };
         found.clear();
         find_at_edges(&a, &b, &reach, (walk, leaves), found, pierced);
@@ -164,11 +164,11 @@ impl ObstacleSearch {
                 && !pierced.contains(&(pair.points[0], one.face))
             {
                 let depth = depth_of(one, solid, position, at.first);
-                if depth > 2.0 * sink(cloth.ctx) + thickness(&pair, target.radii, position, at.first) {
+                if depth > 2.0 * sink(cloth.ctx()) + thickness(&pair, target.radii, position, at.first) {
                     // Its particles find the way out.
                     continue;
                 }
-                if depth > 0.0 && is_pressed_over(one, target.radii, cloth.ctx) {
+                if depth > 0.0 && is_pressed_over(one, target.radii, cloth.ctx()) {
                     // It belongs on the other side.
                     (pair.normal, pair.gap) = (-pair.normal, -pair.gap);
                 }
@@ -190,18 +190,23 @@ impl ObstacleSearch {
 }
 
 /// How sharp corners and edges of a mesh have to be that the triangles of a cloth sink in too deep at them.
-fn sharpness(cloth: &Running) -> f32 {
-    2.0 * sink(cloth.ctx) / cloth.surface().longest_edge
+fn sharpness(cloth: &impl ClothInStep) -> f32 {
+    2.0 * sink(cloth.ctx()) / cloth.surface().longest_edge
 }
 
 /// Takes the cloth's ways into the obstacle's frame, and returns the box around them.
-fn to_frame(at: &ClothMotion, poses: [Isometry3d; 2], position: &mut Vec<Vec3A>, way: &mut Vec<Vec3A>) -> Bounds {
+fn to_frame(
+    at: &ClothMotion<impl ClothInStep>,
+    poses: [Isometry3d; 2],
+    position: &mut Vec<Vec3A>,
+    way: &mut Vec<Vec3A>,
+) -> Bounds {
     let [now, end] = poses.map(|pose| pose.inverse());
     position.clear();
     way.clear();
     let mut bounds = Bounds::NOTHING;
     for (&start, &far) in at.ways.position.iter().zip(at.ways.way) {
-        let start = start - at.cloth.offset;
+        let start = start - at.cloth.offset();
         let (from, to) = (now.transform_point(start), end.transform_point(start + far));
         position.push(from);
         way.push(to - from);

@@ -12,10 +12,8 @@ use crate::solver::{
         },
         closest_point, inside,
     },
-    layout::{
-        lanes::Run,
-        simd::{LANES, Lane, Vec3x8},
-    },
+    layout::simd::{LANES, Lane, Vec3x8},
+    particles::lanes::Run,
     shape::TriangleMesh,
 };
 

@@ -5,8 +5,8 @@ use fearless_simd::{f32x8, prelude::*};
 use crate::solver::{
     contact::mesh::BlockCache,
     layout::{
-        lanes::Block,
         number::Number,
+        points::Block,
         simd::{Vec3Wide, Vec3x8, lane},
     },
     shape::solid::field::SignedDistance,

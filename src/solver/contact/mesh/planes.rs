@@ -5,7 +5,7 @@ use fearless_simd::{f32x8, prelude::*};
 use crate::solver::{
     contact::mesh::{BlockCache, MeshDistanceQuery},
     layout::{
-        lanes::Block,
+        points::Block,
         simd::{Lane, Vec3x8, lane},
     },
     shape::solid::field::SignedDistance,

@@ -5,7 +5,8 @@ use fearless_simd::{f32x8, prelude::*};
 
 use crate::solver::{
     contact::particle::ccd::{Correction, ObstacleSweep},
-    layout::{lanes::Run, simd::Vec3x8},
+    layout::simd::Vec3x8,
+    particles::lanes::Run,
     shape::solid::field::{SignedDistance, SignedDistanceField},
 };
 

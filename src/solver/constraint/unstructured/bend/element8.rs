@@ -5,10 +5,10 @@ use fearless_simd::{f32x8, prelude::*};
 use crate::solver::{
     constraint::unstructured::bend::BendSolver,
     layout::{
-        gathered::{GatheredParticles, gather},
-        lanes::{apart, together},
+        points::{apart, together},
         simd::{LANES, SHORTEST, Vec3x8, lane},
     },
+    particles::gathered::{GatheredParticles, gather},
     topology::Bend,
 };
 

@@ -3,12 +3,21 @@
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
 use crate::solver::{
-    constraint::unstructured::spring::End,
     layout::{
-        lanes::{Lanes, apart, together},
-        simd::{LANES, SimdLevel, Vec3x8, lane},
+        points::{apart, together},
+        simd::{LANES, SimdLevel, Vec3Wide, Vec3x8, lane},
     },
+    particles::lanes::Lanes,
 };
+
+/// One end of springs side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct End<F> {
+    pub position: Vec3Wide<F>,
+    /// Position before the substep; read only where springs are damped.
+    pub previous: Vec3Wide<F>,
+    pub inverse_mass: F,
+}
 
 /// The particles one by one: what constraints between any of them read and write.
 #[derive(Clone, Debug, Default)]
