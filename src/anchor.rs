@@ -78,7 +78,7 @@ pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity,
     }
     let particles: Vec<u32> = pins.iter().map(|pin| pin.particle).collect();
     state.keep_tethers(|pin| particles.binary_search(&pin).is_ok());
-    let tied = particles.iter().copied().filter(|particle| !state.mounted.contains(particle));
+    let tied = particles.iter().copied().filter(|particle| !state.attached_pins.contains(particle));
     state.tying = Some(Box::new(TetherBuild::begin(tied.collect())));
     state.blend_weights = None;
     state.blending = (carriers.len() > 1).then(|| {
@@ -176,12 +176,12 @@ fn take_asked_jump(state: &mut ClothState, pose: Affine3A) -> Option<Jump> {
 
 fn plan_anchors(state: &mut ClothState) {
     let origin = Vec3A::from(state.origin);
-    let Work { pin_motions, mounts, mount_owners, mounted, .. } = &mut state.work;
+    let Work { pin_motions, body_attachments, mount_owners, attached_pins, .. } = &mut state.work;
     pin_motions.clear();
     // Bridges to physics engines fill these.
-    mounts.clear();
+    body_attachments.clear();
     mount_owners.clear();
-    mounted.clear();
+    attached_pins.clear();
     for pin in &mut state.pins {
         let carrier = &state.carriers[pin.carrier as usize];
         let place = &mut state.particles.position[pin.particle as usize];

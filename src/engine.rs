@@ -8,13 +8,13 @@ use bevy::{math::Isometry3d, prelude::*};
 use crate::{collider::Obstacles, solver::Obstacle, teleport::JumpDetection};
 
 mod bodies;
-mod mounts;
+mod body_attachments;
 mod parts;
 mod pushes;
 
 use bodies::Step;
 pub(crate) use bodies::{Bodies, Dynamic, Mover};
-pub(crate) use mounts::{mount_pins, note_carriers, untie_mounted};
+pub(crate) use body_attachments::{mount_pins, note_carriers, untie_mounted};
 pub(crate) use parts::{Part, Shapes, capsule, mesh};
 pub(crate) use pushes::{Pushes, carry, collect_pushes, strayed};
 

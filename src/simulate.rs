@@ -122,8 +122,8 @@ fn take_pushes(work: &mut Work, scratch: &Scratch) {
     let pushes = scratch.pushes().iter().zip(scratch.strays()).map(|(push, stray)| (*push, *stray));
     let bodies = obstacles.iter().zip(&*owners).zip(pushes).filter(|((obstacle, _), _)| obstacle.body.is_some());
     let bodies = bodies.map(|((_, owner), pushed)| (*owner, pushed));
-    let mounts = mount_owners.iter().copied().zip(scratch.pulls().iter().copied());
-    given.extend(bodies.chain(mounts).map(|(to, (push, stray))| Given { to, push, stray }));
+    let body_attachments = mount_owners.iter().copied().zip(scratch.pulls().iter().copied());
+    given.extend(bodies.chain(body_attachments).map(|(to, (push, stray))| Given { to, push, stray }));
 }
 
 /// What of a cloth goes into a step.
@@ -147,7 +147,17 @@ impl<'a> Parts<'a> {
         state.step_start.clone_from(&state.particles.position);
         let margin = state.collision_margin();
         let ClothState { particles, topology, origin, settings, effort, work, tethers, .. } = state;
-        let Work { pin_motions, mounts, mounted, grabs, obstacles: near, owners, winds: felt, jump, .. } = work;
+        let Work {
+            pin_motions,
+            body_attachments,
+            attached_pins,
+            grabs,
+            obstacles: near,
+            owners,
+            winds: felt,
+            jump,
+            ..
+        } = work;
         surroundings.obstacles.around(*origin, settings.collision_mask, *jump, near, owners);
         surroundings.winds.around(*origin, felt);
         let ctx = StepContext {
@@ -158,8 +168,8 @@ impl<'a> Parts<'a> {
             material,
             gravity: (gravity * settings.gravity_scale).into(),
             pin_motions,
-            mounts,
-            mounted,
+            body_attachments,
+            attached_pins,
             grabs,
             max_velocity: settings.max_velocity,
             tethers: settings.tether_slack.map(|_| &*tethers),

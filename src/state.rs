@@ -53,7 +53,7 @@ pub struct ClothState {
     /// Fixed particles and what they follow.
     pub(crate) pins: Vec<HeldPin>,
     /// Particles that are fixed to bodies which give way, by what is known: they hold no tethers.
-    pub(crate) mounted: Vec<u32>,
+    pub(crate) attached_pins: Vec<u32>,
     /// Tethers to the pins.
     pub(crate) tethers: Tethers,
     /// Tethers that are being worked out anew.
@@ -140,9 +140,9 @@ pub(crate) struct Work {
     /// Whose obstacle each is.
     pub owners: Vec<Entity>,
     /// Bodies that pins are fixed to, whose they are, and which anchors are on which.
-    pub mounts: Vec<BodyAttachment>,
+    pub body_attachments: Vec<BodyAttachment>,
     pub mount_owners: Vec<Entity>,
-    pub mounted: Vec<AttachedPin>,
+    pub attached_pins: Vec<AttachedPin>,
     /// What the bodies among all these have been given.
     pub given: Vec<Given>,
     pub winds: Vec<WindSource>,

@@ -294,7 +294,7 @@ impl CandidateItem<'_, '_> {
 /// Gives a cloth the `tethers` that tie `ties`. Where its pins have changed meanwhile, those to new ones are worked out
 /// while it runs.
 fn tie(state: &mut ClothState, targets: &[PinTarget], ties: &TetherKey, mut tethers: Tethers) {
-    state.mounted.clear();
+    state.attached_pins.clear();
     if ties.pins == pinned(targets) {
         state.tying = None;
     } else {

@@ -96,9 +96,9 @@ pub struct StepContext<'a> {
     /// Fixed particles and their way.
     pub pin_motions: &'a [PinMotion],
     /// Bodies that anchors are fixed to and that give way. On these there are no tethers.
-    pub mounts: &'a [BodyAttachment],
+    pub body_attachments: &'a [BodyAttachment],
     /// Which anchors are fixed to which of them.
-    pub mounted: &'a [AttachedPin],
+    pub attached_pins: &'a [AttachedPin],
     /// Hands that pull at the cloth.
     pub grabs: &'a [Grab],
     /// The most that a particle may be faster than what holds the cloth, m/s.

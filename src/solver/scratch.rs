@@ -35,7 +35,7 @@ pub struct Scratch {
     /// Sum of (stiffness in N/m, damping in N·s/m) of the springs at each particle.
     pub(crate) spring_sums: Vec<(f32, f32)>,
     /// The particles one by one.
-    pub(crate) beads: GatheredParticles,
+    pub(crate) gathered: GatheredParticles,
     /// Their ways while they bend.
     pub(crate) ways: ChebyshevBuffers,
     /// How they bend in this step.
@@ -47,11 +47,11 @@ pub struct Scratch {
     /// The pins that hold tethers.
     pub(crate) pins: PinPlaces,
     /// Bodies that anchors are fixed to.
-    pub(crate) mounts: BodyAttachments,
+    pub(crate) body_attachments: BodyAttachments,
     /// What this thread needs of its own.
-    pub(crate) bench: WorkerScratch,
+    pub(crate) worker_scratch: WorkerScratch,
     /// The obstacles around.
-    pub(crate) near: BroadPhase,
+    pub(crate) broad_phase: BroadPhase,
     /// The faces of each of them that is a mesh.
     pub(crate) faces: Vec<MeshContacts>,
     /// The bodies among the obstacles.
@@ -59,7 +59,7 @@ pub struct Scratch {
     /// What is touched with triangles and edges: of the first of the cloths that are stepped together.
     pub(crate) touch: FeatureContacts,
     /// What each thread needs of its own that shares a large cloth.
-    pub(crate) benches: Vec<WorkerScratch>,
+    pub(crate) worker_scratches: Vec<WorkerScratch>,
 }
 
 impl Scratch {
@@ -75,9 +75,9 @@ impl Scratch {
         &self.bodies.strays
     }
 
-    /// What the cloth has given to each of the [`mounts`](crate::solver::input::StepContext::mounts) in the latest step, and how far that
+    /// What the cloth has given to each of the [`body_attachments`](crate::solver::input::StepContext::body_attachments) in the latest step, and how far that
     /// has come off its path by it.
     pub fn pulls(&self) -> &[(BodyImpulse, BodyDisplacement)] {
-        &self.mounts.pulls
+        &self.body_attachments.pulls
     }
 }

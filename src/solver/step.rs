@@ -155,7 +155,7 @@ impl<'a> Plan<'a> {
         let longest_edge = if is_near { feature::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
         let touches = ctx.self_collision != SelfCollision::Off;
-        let is_mounted = !ctx.mounted.is_empty();
+        let is_mounted = !ctx.attached_pins.is_empty();
         let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
         let risk = match (feature::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.self_collision) {
             (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
@@ -173,7 +173,7 @@ impl<'a> Plan<'a> {
             Method::Explicit => {
                 scratch.lanes.load(particles, topology.order(), scratch.simd_level);
                 grab::take_up(&mut scratch.lanes, ctx.grabs);
-                scratch.mounts.begin(&mut scratch.lanes, topology, ctx);
+                scratch.body_attachments.begin(&mut scratch.lanes, topology, ctx);
                 let stability = explicit::stability(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
                 (ctx.max_substeps.max(1), stability, &[][..])
             }
@@ -223,10 +223,10 @@ impl<'a> Running<'a> {
         imperfection::seed(particles, topology, ctx);
         let Loaded { is_pushed, has_moved } = load(particles, topology, ctx, h, helpers, scratch);
         grab::take_up(&mut scratch.lanes, ctx.grabs);
-        scratch.near.begin();
+        scratch.broad_phase.begin();
         scratch.faces.resize_with(ctx.obstacles.len().max(scratch.faces.len()), MeshContacts::default);
         scratch.faces.iter_mut().for_each(MeshContacts::begin);
-        scratch.mounts.begin(&mut scratch.lanes, topology, ctx);
+        scratch.body_attachments.begin(&mut scratch.lanes, topology, ctx);
         let substep = Substep {
             topology,
             ctx,
@@ -243,7 +243,7 @@ impl<'a> Running<'a> {
         };
         scratch.air.sample(particles, ctx);
         substep.prepare(scratch);
-        scratch.mounts.rest(&mut scratch.lanes);
+        scratch.body_attachments.rest(&mut scratch.lanes);
         Self {
             particles,
             scratch,
@@ -277,8 +277,8 @@ impl<'a> Running<'a> {
             substep.move_freely(scratch);
         }
         pin_motion::advance(&mut scratch.lanes, ctx.pin_motions, span.end, self.dt);
-        let Scratch { lanes, mounts, applied_force, .. } = &mut **scratch;
-        mounts.advance(lanes, ctx, span.clone(), self.dt, substep.applied(applied_force));
+        let Scratch { lanes, body_attachments, applied_force, .. } = &mut **scratch;
+        body_attachments.advance(lanes, ctx, span.clone(), self.dt, substep.applied(applied_force));
         scratch.bodies.advance(ctx, span.clone(), substep.h);
         if let Some(tethers) = ctx.tethers {
             scratch.pins.read(tethers, &scratch.lanes);
@@ -301,8 +301,8 @@ impl<'a> Running<'a> {
             }
             Method::Explicit => grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h),
         }
-        let Scratch { lanes, mounts, .. } = &mut **scratch;
-        mounts.settle(lanes, ctx, substep.h);
+        let Scratch { lanes, body_attachments, .. } = &mut **scratch;
+        body_attachments.settle(lanes, ctx, substep.h);
     }
 
     /// Keeps the cloth out of obstacles and ends the substep.
@@ -311,8 +311,8 @@ impl<'a> Running<'a> {
         let ctx = substep.ctx;
         if substep.is_near {
             self.contacts = {
-                let Scratch { lanes, near, faces, bodies, simd_level, .. } = &mut **scratch;
-                contact::project(lanes, (near, faces, bodies), ctx, span, substep.h, *simd_level)
+                let Scratch { lanes, broad_phase, faces, bodies, simd_level, .. } = &mut **scratch;
+                contact::project(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, *simd_level)
             };
         }
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
@@ -412,6 +412,6 @@ fn load(
 fn helpers<'a>(topology: &'a Topology, ctx: &StepContext<'a>) -> Option<(&'a TaskPool, &'a Lattice)> {
     let is_woven = ctx.method == Method::Strands && topology.batches.iter().all(|batch| batch.woven);
     let is_large = topology.particle_count() >= grid_substep::LARGE;
-    let is_free = ctx.grabs.is_empty() && ctx.mounted.is_empty();
+    let is_free = ctx.grabs.is_empty() && ctx.attached_pins.is_empty();
     ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_woven && is_free)
 }

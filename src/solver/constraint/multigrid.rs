@@ -212,14 +212,15 @@ impl LevelNodes {
             row_masses: &self.row_masses,
         };
         let spring = Scaled { c: 0.0, ..run.stretch };
-        let yarn = StrandMaterial::SpringResponse(TensionOnly { spring, give: 1.0 + (run.slack - TAUTER).max(0.0) });
-        let weaver = GridStrandSolver {
+        let strand_material =
+            StrandMaterial::SpringResponse(TensionOnly { spring, give: 1.0 + (run.slack - TAUTER).max(0.0) });
+        let grid_solver = GridStrandSolver {
             lattice: &level.lattice,
-            yarn,
+            strand_material,
             bend_factors: &BendFactors::NONE,
             simd_level: run.simd_level,
         };
-        weaver.solve(&mut grid, run.last, strand_scratch);
+        grid_solver.solve(&mut grid, run.last, strand_scratch);
     }
 
     /// Works out how far the nodes went.

@@ -41,7 +41,7 @@ impl UnstructuredPass<'_> {
     pub fn solve(
         self,
         lanes: &mut Lanes,
-        beads: &mut GatheredParticles,
+        gathered: &mut GatheredParticles,
         ways: &mut ChebyshevBuffers,
         simd_level: SimdLevel,
     ) {
@@ -59,21 +59,21 @@ impl UnstructuredPass<'_> {
             }
             return;
         }
-        beads.read(lanes, material.is_damped(), simd_level);
+        gathered.read(lanes, material.is_damped(), simd_level);
         if let Some(bending) = bending {
-            bend::solve(beads, ways, topology, woven, bending, simd_level);
+            bend::solve(gathered, ways, topology, woven, bending, simd_level);
         }
         if let Some(grid) = &grid {
             for batch in &topology.face_batches {
-                face::solve(beads, &topology.faces[batch.clone()], grid, simd_level);
+                face::solve(gathered, &topology.faces[batch.clone()], grid, simd_level);
             }
         }
         for (batch, law) in batches {
-            spring::solve(beads, springs(batch), law, simd_level);
+            spring::solve(gathered, springs(batch), law, simd_level);
         }
         if let Some(strand_pack_solver) = strand_pack_solver {
-            strand_pack_solver.solve(beads, simd_level);
+            strand_pack_solver.solve(gathered, simd_level);
         }
-        beads.write(lanes, simd_level);
+        gathered.write(lanes, simd_level);
     }
 }

@@ -187,7 +187,7 @@ pub struct FeatureContacts {
     /// Numbers of the pairs that touched an obstacle.
     at_obstacles: Vec<u32>,
     leaves: Vec<(u32, u32)>,
-    walk: Traversal,
+    traversal: Traversal,
     fixed: Vec<ObstaclePoint>,
     body_ways: Vec<PredictedBodyMotion>,
     at_obstacle: ObstacleSearch,
@@ -243,7 +243,7 @@ impl FeatureContacts {
             let (slack, span) = (self.slack[number], self.searched.clone());
             let at = ClothMotion { cloth, number, first, total, ways, slack, span, dt };
             for i in 0..cloth.ctx().obstacles.len() {
-                self.at_obstacle.search(&at, i, &mut self.walk, (&mut self.fixed, &mut self.pairs));
+                self.at_obstacle.search(&at, i, &mut self.traversal, (&mut self.fixed, &mut self.pairs));
             }
         }
         let count = self.start.len() + self.fixed.len();

@@ -118,12 +118,12 @@ impl MeshContacts {
     }
 
     /// What is to be seen of a mesh in the part `span` of the step.
-    pub(crate) fn sight<'a>(
+    pub(crate) fn query<'a>(
         &'a mut self,
         shape: &'a MeshShape,
         ctx: &StepContext,
         (bodies, obstacle): (&Bodies, usize),
-        passage: &ObstacleSweep,
+        sweep: &ObstacleSweep,
         span: Range<f32>,
         block_count: usize,
     ) -> MeshDistanceQuery<'a> {
@@ -155,7 +155,7 @@ impl MeshContacts {
             places,
             blocks,
             block: 0,
-            passage: *passage,
+            sweep: *sweep,
             gravity: ctx.gravity,
             end,
             span,
@@ -173,7 +173,7 @@ pub(crate) struct MeshDistanceQuery<'a> {
     places: &'a BvhBounds,
     blocks: &'a mut [BlockCache],
     block: usize,
-    passage: ObstacleSweep,
+    sweep: ObstacleSweep,
     /// m/s²
     gravity: Vec3A,
     /// Pose of the mesh at the end of the step.
@@ -283,7 +283,7 @@ impl DistanceQuery for MeshDistanceQuery<'_> {
             .way_from(simd, &known.then, &known.now)
     }
 
-    fn correction(&self, i: usize, passage: &ObstacleSweep, position: Vec3A, previous: Vec3A) -> Option<Correction> {
-        crate::solver::contact::mesh::ccd::correction(self, i, passage, position, previous)
+    fn correction(&self, i: usize, sweep: &ObstacleSweep, position: Vec3A, previous: Vec3A) -> Option<Correction> {
+        crate::solver::contact::mesh::ccd::correction(self, i, sweep, position, previous)
     }
 }

@@ -50,14 +50,14 @@ pub(crate) fn project(
         let obstacle = near.obstacles[number].obstacle;
         let it = &ctx.obstacles[obstacle];
         let poses @ [start, end] = bodies.poses(ctx, obstacle, span.clone());
-        let passage = ObstacleSweep::new(it, poses, ctx, h);
+        let sweep = ObstacleSweep::new(it, poses, ctx, h);
         let stretches = near.stretches(number);
-        let mut past = ParticleProjector { passage, obstacle, bodies, run: &mut run, stretches, simd_level };
+        let mut past = ParticleProjector { sweep, obstacle, bodies, run: &mut run, stretches, simd_level };
         contacts += match &it.shape {
             Shape::Solid(solid) => {
                 let mut solid = *solid;
                 if start == end && it.body.is_none() {
-                    (past.passage, solid) = passage.unturned(solid);
+                    (past.sweep, solid) = sweep.unturned(solid);
                 }
                 match solid {
                     Solid::Sphere(field) => past.go(&mut UniformField(field)),
@@ -71,11 +71,10 @@ pub(crate) fn project(
                 }
             }
             Shape::Mesh(mesh) => {
-                past.passage.distance = passage.distance.max(mesh::LEAST + it.rounding);
-                let (moving, passage) = ((&*past.bodies, obstacle), past.passage);
-                let mut sight =
-                    known[obstacle].sight(mesh, ctx, moving, &passage, span.clone(), past.run.position.len());
-                past.go(&mut sight)
+                past.sweep.distance = sweep.distance.max(mesh::LEAST + it.rounding);
+                let (moving, sweep) = ((&*past.bodies, obstacle), past.sweep);
+                let mut query = known[obstacle].query(mesh, ctx, moving, &sweep, span.clone(), past.run.position.len());
+                past.go(&mut query)
             }
         };
     }
@@ -97,7 +96,7 @@ pub(crate) struct CandidateRanges<'a> {
 
 /// A cloth on its way past an obstacle.
 struct ParticleProjector<'a, 'b> {
-    passage: ObstacleSweep,
+    sweep: ObstacleSweep,
     /// Number of the obstacle.
     obstacle: usize,
     bodies: &'a mut Bodies,
@@ -116,11 +115,11 @@ pub(crate) struct Contacts8<S: Simd> {
     /// Outward normal of the surface.
     normal: Vec3x8<S>,
     /// How far each came to be behind the surface within the substep, m.
-    gained: f32x8<S>,
+    penetration: f32x8<S>,
     /// How far each leaves of what it was inside before, m.
     parted: f32x8<S>,
     /// How far each goes back that was inside before and left faster than it may, m.
-    held_back: f32x8<S>,
+    clamped: f32x8<S>,
     /// Way past the surface, m.
     slide: Vec3x8<S>,
     /// Which lanes see another side of the shape than before.
@@ -128,22 +127,22 @@ pub(crate) struct Contacts8<S: Simd> {
 }
 
 impl ParticleProjector<'_, '_> {
-    fn go(&mut self, sight: &mut impl DistanceQuery) -> u32 {
+    fn go(&mut self, query: &mut impl DistanceQuery) -> u32 {
         let level = self.simd_level.level();
         if self.bodies.get(self.obstacle).is_some() {
-            dispatch!(level, simd => self.pass::<_, MovingFrame<_>, Dynamic, _>(simd, sight))
-        } else if self.passage.moves() {
-            dispatch!(level, simd => self.pass::<_, MovingFrame<_>, Kinematic, _>(simd, sight))
-        } else if self.passage.end.rotation == Quat::IDENTITY {
-            dispatch!(level, simd => self.pass::<_, TranslatedFrame<_>, Kinematic, _>(simd, sight))
+            dispatch!(level, simd => self.pass::<_, MovingFrame<_>, Dynamic, _>(simd, query))
+        } else if self.sweep.moves() {
+            dispatch!(level, simd => self.pass::<_, MovingFrame<_>, Kinematic, _>(simd, query))
+        } else if self.sweep.end.rotation == Quat::IDENTITY {
+            dispatch!(level, simd => self.pass::<_, TranslatedFrame<_>, Kinematic, _>(simd, query))
         } else {
-            dispatch!(level, simd => self.pass::<_, RotatedFrame<_>, Kinematic, _>(simd, sight))
+            dispatch!(level, simd => self.pass::<_, RotatedFrame<_>, Kinematic, _>(simd, query))
         }
     }
 
     #[inline(always)]
-    fn pass<S: Simd, C: ObstacleFrame<S>, H: Response, V: DistanceQuery>(&mut self, simd: S, sight: &mut V) -> u32 {
-        let mut course = C::new(simd, &self.passage);
+    fn pass<S: Simd, C: ObstacleFrame<S>, H: Response, V: DistanceQuery>(&mut self, simd: S, query: &mut V) -> u32 {
+        let mut frame = C::new(simd, &self.sweep);
         let zero = f32x8::splat(simd, 0.0);
         let (mut way, mut drift) = self.ways();
         let mut contacts = 0;
@@ -155,17 +154,16 @@ impl ParticleProjector<'_, '_> {
             let mut farthest = zero;
             let first = reachable.stretch * STRETCH;
             for block in first..(first + STRETCH).min(self.run.position.len()) {
-                let local = course.to_local(Vec3x8::load(simd, &self.run.position[block]));
-                if !sight.turn_to(simd, block, self.run, local) {
+                let local = frame.to_local(Vec3x8::load(simd, &self.run.position[block]));
+                if !query.turn_to(simd, block, self.run, local) {
                     continue;
                 }
-                for _ in 0..sight.passes() {
-                    let Some(touching) = self.meet(simd, sight, &course, drift, block) else { break };
+                for _ in 0..query.passes() {
+                    let Some(touching) = self.meet(simd, query, &frame, drift, block) else { break };
                     let Contacts8 { touches, mut swept, .. } = touching;
                     let known = contacts;
                     if touches.any_true() {
-                        let (now, left) =
-                            H::resolve(simd, &touching, self.passage.friction, self.bodies, self.obstacle);
+                        let (now, left) = H::resolve(simd, &touching, self.sweep.friction, self.bodies, self.obstacle);
                         now.store(&mut self.run.position[block]);
                         left.store(&mut self.run.previous[block]);
                         let off = now - Vec3x8::load(simd, &self.stretches.start[block]);
@@ -175,7 +173,7 @@ impl ParticleProjector<'_, '_> {
                     while swept != 0 {
                         let i = swept.trailing_zeros() as usize;
                         swept &= swept - 1;
-                        if let Some(off) = self.sweep(sight, block, i) {
+                        if let Some(off) = self.sweep(query, block, i) {
                             moved = moved.max(off);
                             contacts += 1;
                         }
@@ -185,7 +183,7 @@ impl ParticleProjector<'_, '_> {
                     }
                     if H::MOVES {
                         self.follow_body();
-                        course = C::new(simd, &self.passage);
+                        frame = C::new(simd, &self.sweep);
                         (way, drift) = self.ways();
                     }
                 }
@@ -198,16 +196,16 @@ impl ParticleProjector<'_, '_> {
     /// Goes on from where the body has been pushed to.
     fn follow_body(&mut self) {
         if let Some(body) = self.bodies.get(self.obstacle) {
-            self.passage.end = body.end;
+            self.sweep.end = body.end;
         }
     }
 
     /// How far the obstacle has come at most since it is known what is near, and within this substep, m.
     fn ways(&self) -> (f32, f32) {
-        if !self.passage.moves() && self.bodies.get(self.obstacle).is_none() {
+        if !self.sweep.moves() && self.bodies.get(self.obstacle).is_none() {
             return (0.0, 0.0);
         }
-        let (ObstacleSweep { start, end, .. }, CandidateRanges { pose, far, .. }) = (&self.passage, &self.stretches);
+        let (ObstacleSweep { start, end, .. }, CandidateRanges { pose, far, .. }) = (&self.sweep, &self.stretches);
         let since = |to: &Isometry3d| ccd::way_between(pose, to, *far);
         (since(start).max(since(end)), ccd::way_between(start, end, *far))
     }
@@ -217,18 +215,18 @@ impl ParticleProjector<'_, '_> {
     fn meet<S: Simd, C: ObstacleFrame<S>>(
         &self,
         simd: S,
-        sight: &impl DistanceQuery,
-        course: &C,
+        query: &impl DistanceQuery,
+        frame: &C,
         drift: f32,
         block: usize,
     ) -> Option<Contacts8<S>> {
-        let ObstacleSweep { distance, parting, .. } = self.passage;
+        let ObstacleSweep { distance, parting, .. } = self.sweep;
         let zero = f32x8::splat(simd, 0.0);
         let place = Vec3x8::load(simd, &self.run.position[block]);
         let before = Vec3x8::load(simd, &self.run.previous[block]);
         let inverse_mass = lane(simd, &self.run.inverse_mass[block]);
-        let local = course.to_local(place);
-        let after = sight.sample(simd, local);
+        let local = frame.to_local(place);
+        let after = query.sample(simd, local);
         // A particle that is farther away than it can have come this substep is left alone.
         let (depth, way) = (-after.distance + distance, place - before);
         let beyond = (-depth - drift).max(zero);
@@ -236,8 +234,8 @@ impl ParticleProjector<'_, '_> {
         if is_near.all_false() {
             return None;
         }
-        let old = sight.seen_before(simd, course.start_to_local(before));
-        let after = sight.keep_side(simd, old, after);
+        let old = query.seen_before(simd, frame.start_to_local(before));
+        let after = query.keep_side(simd, old, after);
         let depth = -after.distance + distance;
         let sees_the_same = old.normal.dot(after.normal).simd_gt(zero);
         // What leaves by itself needs that much less of a push, and none that makes it too fast.
@@ -246,17 +244,17 @@ impl ParticleProjector<'_, '_> {
         let left = was_inside - old_depth;
         let most = f32x8::splat(simd, parting);
         let is_deep = was_inside.simd_gt(most);
-        let normal = course.turned(after.normal);
-        let way = course.past(way, local + after.normal * depth) - course.turned(sight.own_way(simd, local));
+        let normal = frame.turned(after.normal);
+        let way = frame.past(way, local + after.normal * depth) - frame.turned(query.own_way(simd, local));
         Some(Contacts8 {
             place,
             before,
             inverse_mass,
             touches: is_near & sees_the_same & (depth.simd_gt(zero) | is_deep),
             normal,
-            gained: is_inside - old_depth,
+            penetration: is_inside - old_depth,
             parted: old_depth.min((most - left).max(zero)),
-            held_back: is_deep.select((was_inside - depth - most).max(zero), zero),
+            clamped: is_deep.select((was_inside - depth - most).max(zero), zero),
             slide: way - normal * way.dot(normal),
             swept: (is_near & !sees_the_same).to_bitmask(),
         })
@@ -266,12 +264,12 @@ impl ParticleProjector<'_, '_> {
     /// then from where its stretch was, m, if it was.
     #[cold]
     #[inline(never)]
-    fn sweep(&mut self, sight: &impl DistanceQuery, block: usize, i: usize) -> Option<f32> {
+    fn sweep(&mut self, query: &impl DistanceQuery, block: usize, i: usize) -> Option<f32> {
         let get = |[x, y, z]: &Block| Vec3A::new(x[i], y[i], z[i]);
         let (mut position, mut previous) = (get(&self.run.position[block]), get(&self.run.previous[block]));
-        let correction = sight.correction(i, &self.passage, position, previous)?;
+        let correction = query.correction(i, &self.sweep, position, previous)?;
         let inverse_mass = self.run.inverse_mass[block][i];
-        let friction = self.passage.friction;
+        let friction = self.sweep.friction;
         crate::solver::contact::particle::response::one(
             &correction,
             [&mut position, &mut previous],

@@ -51,6 +51,6 @@ pub struct BodyAttachment {
 pub struct AttachedPin {
     /// Number of the anchor in [`crate::solver::input::StepContext::pin_motions`].
     pub anchor: u32,
-    /// Number of the body in [`crate::solver::input::StepContext::mounts`].
+    /// Number of the body in [`crate::solver::input::StepContext::body_attachments`].
     pub mount: u32,
 }

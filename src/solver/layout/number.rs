@@ -23,14 +23,14 @@ pub(crate) trait Number:
     type Mask: Copy + BitAnd<Output = Self::Mask> + Not<Output = Self::Mask>;
 
     /// `value` in each place.
-    fn like(self, value: f32) -> Self;
-    fn root(self) -> Self;
-    fn size(self) -> Self;
+    fn broadcast(self, value: f32) -> Self;
+    fn square_root(self) -> Self;
+    fn absolute(self) -> Self;
     fn at_least(self, other: Self) -> Self;
     fn at_most(self, other: Self) -> Self;
     fn is_below(self, other: Self) -> Self::Mask;
     /// `self` where that is so, else `other`.
-    fn if_so(self, so: Self::Mask, other: Self) -> Self;
+    fn select(self, so: Self::Mask, other: Self) -> Self;
     /// Whether it is so of any of them.
     fn is_any(so: Self::Mask) -> bool;
 }
@@ -39,17 +39,17 @@ impl Number for f32 {
     type Mask = bool;
 
     #[inline(always)]
-    fn like(self, value: f32) -> Self {
+    fn broadcast(self, value: f32) -> Self {
         value
     }
 
     #[inline(always)]
-    fn root(self) -> Self {
+    fn square_root(self) -> Self {
         self.sqrt()
     }
 
     #[inline(always)]
-    fn size(self) -> Self {
+    fn absolute(self) -> Self {
         self.abs()
     }
 
@@ -69,7 +69,7 @@ impl Number for f32 {
     }
 
     #[inline(always)]
-    fn if_so(self, so: bool, other: Self) -> Self {
+    fn select(self, so: bool, other: Self) -> Self {
         if so { self } else { other }
     }
 
@@ -83,17 +83,17 @@ impl<S: Simd> Number for f32x8<S> {
     type Mask = mask32x8<S>;
 
     #[inline(always)]
-    fn like(self, value: f32) -> Self {
+    fn broadcast(self, value: f32) -> Self {
         Self::splat(self.simd, value)
     }
 
     #[inline(always)]
-    fn root(self) -> Self {
+    fn square_root(self) -> Self {
         self.sqrt()
     }
 
     #[inline(always)]
-    fn size(self) -> Self {
+    fn absolute(self) -> Self {
         self.abs()
     }
 
@@ -113,7 +113,7 @@ impl<S: Simd> Number for f32x8<S> {
     }
 
     #[inline(always)]
-    fn if_so(self, so: mask32x8<S>, other: Self) -> Self {
+    fn select(self, so: mask32x8<S>, other: Self) -> Self {
         so.select(self, other)
     }
 
@@ -126,8 +126,8 @@ impl<S: Simd> Number for f32x8<S> {
 impl<N: Number> Vec3Wide<N> {
     /// `self` where that is so, else `other`.
     #[inline(always)]
-    pub fn if_so(self, so: N::Mask, other: Self) -> Self {
-        Self { x: self.x.if_so(so, other.x), y: self.y.if_so(so, other.y), z: self.z.if_so(so, other.z) }
+    pub fn select(self, so: N::Mask, other: Self) -> Self {
+        Self { x: self.x.select(so, other.x), y: self.y.select(so, other.y), z: self.z.select(so, other.z) }
     }
 }
 

@@ -38,7 +38,7 @@ pub(crate) const LARGE: usize = 10_000;
 /// What the threads need to know of a substep.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SharedStep<'a> {
-    pub weaver: GridStrandSolver<'a>,
+    pub grid_solver: GridStrandSolver<'a>,
     pub cells: CellMaterial<'a>,
     pub last: StrandDirection,
     /// Levels that are solved already, if there are any.
@@ -58,20 +58,20 @@ pub(crate) struct WorkerScratch {
     /// Rows between bands.
     pub seam: Seam,
     /// Diagonals that are being solved.
-    pub bias: ShearScratch,
+    pub shear_scratch: ShearScratch,
     /// Ways of a level's rows, spread over eight columns.
     pub across: Points,
 }
 
 /// Moves the cloth along with its levels, solves tethers and springs, and finishes the substep.
-pub(crate) fn solve(pool: &TaskPool, lanes: &mut Lanes, benches: &mut Vec<WorkerScratch>, work: &SharedStep) {
-    benches.resize_with(benches.len().max(phases::size(pool)), WorkerScratch::default);
+pub(crate) fn solve(pool: &TaskPool, lanes: &mut Lanes, worker_scratches: &mut Vec<WorkerScratch>, work: &SharedStep) {
+    worker_scratches.resize_with(worker_scratches.len().max(phases::size(pool)), WorkerScratch::default);
     let order = lanes.order;
     let cloth = Cloth {
         work,
         bands: order.bands().collect(),
         runs: lanes.bands().into_iter().map(Mutex::new).collect(),
-        benches: benches.iter_mut().map(Mutex::new).collect(),
+        worker_scratches: worker_scratches.iter_mut().map(Mutex::new).collect(),
     };
     let begin = |band, worker| cloth.begin(band, worker);
     let cross = |band, worker| cloth.cross(band, worker);
@@ -145,14 +145,14 @@ struct Cloth<'a> {
     /// What is in the bands.
     runs: Vec<Mutex<Run<'a>>>,
     /// One for each worker.
-    benches: Vec<Mutex<&'a mut WorkerScratch>>,
+    worker_scratches: Vec<Mutex<&'a mut WorkerScratch>>,
 }
 
 impl Cloth<'_> {
     /// Levels, tethers, and the diagonals below even rows.
     fn begin(&self, number: usize, worker: usize) {
         let SharedStep {
-            weaver: GridStrandSolver { lattice, simd_level, .. },
+            grid_solver: GridStrandSolver { lattice, simd_level, .. },
             cells,
             levels,
             tethers,
@@ -163,24 +163,24 @@ impl Cloth<'_> {
         let (band, mut run) = (self.bands[number], lock(&self.runs[number]));
         let Run { first, position, inverse_mass, .. } = &mut *run;
         if let Some((run, levels)) = levels {
-            levels.move_band(run, band, position, inverse_mass, &mut lock(&self.benches[worker]).across);
+            levels.move_band(run, band, position, inverse_mass, &mut lock(&self.worker_scratches[worker]).across);
         }
         tether::solve(position, inverse_mass, *first, tethers, pins, slack, simd_level);
-        let bias = &mut lock(&self.benches[worker]).bias;
-        diagonal::solve_band(&mut run.sheet(), band, 0, lattice, cells, bias, simd_level);
+        let shear_scratch = &mut lock(&self.worker_scratches[worker]).shear_scratch;
+        diagonal::solve_band(&mut run.sheet(), band, 0, lattice, cells, shear_scratch, simd_level);
     }
 
     /// The diagonals below odd rows, and those to the band above: they have no particle in common.
     fn cross(&self, number: usize, worker: usize) {
-        let SharedStep { weaver: GridStrandSolver { lattice, simd_level, .. }, cells, .. } = *self.work;
+        let SharedStep { grid_solver: GridStrandSolver { lattice, simd_level, .. }, cells, .. } = *self.work;
         let band = self.bands[number];
-        let WorkerScratch { seam, bias, .. } = &mut **lock(&self.benches[worker]);
-        diagonal::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, cells, bias, simd_level);
+        let WorkerScratch { seam, shear_scratch, .. } = &mut **lock(&self.worker_scratches[worker]);
+        diagonal::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, cells, shear_scratch, simd_level);
         let Some(above) = number.checked_sub(1) else { return };
         for (row, band) in [above, number].into_iter().enumerate() {
             seam.take(&lock(&self.runs[band]).sheet(), self.bands[band], row);
         }
-        seam.solve(band, lattice, cells, bias, simd_level);
+        seam.solve(band, lattice, cells, shear_scratch, simd_level);
         for (row, band) in [above, number].into_iter().enumerate() {
             seam.put(lock(&self.runs[band]).position, self.bands[band], row);
         }
@@ -188,26 +188,26 @@ impl Cloth<'_> {
 
     /// Two packs of columns.
     fn solve_columns(&self, pair: usize, worker: usize) {
-        let (weaver, first) = (&self.work.weaver, 2 * pair);
-        let strand_scratch = &mut lock(&self.benches[worker]).strand_scratch;
+        let (grid_solver, first) = (&self.work.grid_solver, 2 * pair);
+        let strand_scratch = &mut lock(&self.worker_scratches[worker]).strand_scratch;
         for (&band, run) in self.bands.iter().zip(&self.runs) {
-            weaver.take_columns(&lock(run).sheet(), band, first, strand_scratch);
+            grid_solver.take_columns(&lock(run).sheet(), band, first, strand_scratch);
         }
-        weaver.solve_taken_columns(first, strand_scratch);
+        grid_solver.solve_taken_columns(first, strand_scratch);
         for (&band, run) in self.bands.iter().zip(&self.runs) {
-            weaver.put_columns(strand_scratch, lock(run).position, band, first);
+            grid_solver.put_columns(strand_scratch, lock(run).position, band, first);
         }
     }
 
     fn solve_rows(&self, number: usize, worker: usize) {
-        let strand_scratch = &mut lock(&self.benches[worker]).strand_scratch;
+        let strand_scratch = &mut lock(&self.worker_scratches[worker]).strand_scratch;
         let part = &mut lock(&self.runs[number]);
-        self.work.weaver.solve_rows(&mut part.sheet(), self.bands[number], strand_scratch);
+        self.work.grid_solver.solve_rows(&mut part.sheet(), self.bands[number], strand_scratch);
     }
 
     fn finish(&self, number: usize) {
         if let Some(finish) = self.work.finish {
-            integrate::finish(&mut lock(&self.runs[number]), finish, self.work.weaver.simd_level);
+            integrate::finish(&mut lock(&self.runs[number]), finish, self.work.grid_solver.simd_level);
         }
     }
 }

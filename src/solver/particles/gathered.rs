@@ -56,15 +56,15 @@ impl GatheredParticles {
         self.now.resize(count, [0.0; 4]);
         let blocks = lanes.order.blocks().zip(&lanes.position.0).zip(&lanes.inverse_mass);
         for (((first, count), [x, y, z]), masses) in blocks {
-            let beads = together([lane(simd, x), lane(simd, y), lane(simd, z), lane(simd, masses)]);
-            self.now[first..first + count].copy_from_slice(&beads[..count]);
+            let gathered = together([lane(simd, x), lane(simd, y), lane(simd, z), lane(simd, masses)]);
+            self.now[first..first + count].copy_from_slice(&gathered[..count]);
         }
         if DAMPED {
             self.before.resize(count, [0.0; 4]);
             for ((first, count), [x, y, z]) in lanes.order.blocks().zip(&lanes.previous.0) {
                 let z = lane(simd, z);
-                let beads = together([lane(simd, x), lane(simd, y), z, z]);
-                self.before[first..first + count].copy_from_slice(&beads[..count]);
+                let gathered = together([lane(simd, x), lane(simd, y), z, z]);
+                self.before[first..first + count].copy_from_slice(&gathered[..count]);
             }
         }
     }
@@ -72,9 +72,9 @@ impl GatheredParticles {
     #[inline(always)]
     fn write_blocks<S: Simd>(&self, simd: S, lanes: &mut Lanes) {
         for ((first, count), block) in lanes.order.blocks().zip(&mut lanes.position.0) {
-            let mut beads = [[0.0; 4]; LANES];
-            beads[..count].copy_from_slice(&self.now[first..first + count]);
-            let [a, b, c, d, e, f, g, h] = &beads;
+            let mut gathered = [[0.0; 4]; LANES];
+            gathered[..count].copy_from_slice(&self.now[first..first + count]);
+            let [a, b, c, d, e, f, g, h] = &gathered;
             let [x, y, z, _] = apart(simd, [a, b, c, d, e, f, g, h]);
             *block = [x.into(), y.into(), z.into()];
         }
@@ -107,23 +107,27 @@ impl GatheredParticles {
 
 /// What eight particles have in a list.
 #[inline(always)]
-pub(crate) fn gather<S: Simd>(simd: S, beads: &[[f32; 4]], [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [f32x8<S>; 4] {
+pub(crate) fn gather<S: Simd>(
+    simd: S,
+    gathered: &[[f32; 4]],
+    [a, b, c, d, e, f, g, h]: &[u32; LANES],
+) -> [f32x8<S>; 4] {
     apart(
         simd,
         [
-            bead(beads, a),
-            bead(beads, b),
-            bead(beads, c),
-            bead(beads, d),
-            bead(beads, e),
-            bead(beads, f),
-            bead(beads, g),
-            bead(beads, h),
+            bead(gathered, a),
+            bead(gathered, b),
+            bead(gathered, c),
+            bead(gathered, d),
+            bead(gathered, e),
+            bead(gathered, f),
+            bead(gathered, g),
+            bead(gathered, h),
         ],
     )
 }
 
 #[inline(always)]
-fn bead<'a>(beads: &'a [[f32; 4]], i: &u32) -> &'a [f32; 4] {
-    &beads[*i as usize]
+fn bead<'a>(gathered: &'a [[f32; 4]], i: &u32) -> &'a [f32; 4] {
+    &gathered[*i as usize]
 }

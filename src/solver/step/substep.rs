@@ -66,9 +66,16 @@ impl Substep<'_> {
             }
         }
         if let Some(lattice) = self.topology.lattice.as_ref().filter(|_| self.ctx.method == Method::Strands) {
-            let Scratch { lanes, bend_factors, bench, simd_level, .. } = &mut *scratch;
-            let yarn = StrandMaterial::new(&self.ctx.material, self.h);
-            bend_factors::prepare(bend_factors, lattice, yarn, lanes, &mut bench.strand_scratch, *simd_level);
+            let Scratch { lanes, bend_factors, worker_scratch, simd_level, .. } = &mut *scratch;
+            let strand_material = StrandMaterial::new(&self.ctx.material, self.h);
+            bend_factors::prepare(
+                bend_factors,
+                lattice,
+                strand_material,
+                lanes,
+                &mut worker_scratch.strand_scratch,
+                *simd_level,
+            );
         }
         if let Some(run) = self.levels(scratch) {
             scratch.levels.fit(&run, &scratch.lanes);
@@ -129,15 +136,16 @@ impl Substep<'_> {
     pub fn solve_strands(&self, scratch: &mut Scratch, goes_on: bool) -> bool {
         let run = self.levels(scratch);
         if let Some(run) = &run {
-            let Scratch { lanes, bench, pins, levels, .. } = scratch;
-            levels.solve(run, lanes, pins, (&mut bench.strand_scratch, &mut bench.across));
+            let Scratch { lanes, worker_scratch, pins, levels, .. } = scratch;
+            levels.solve(run, lanes, pins, (&mut worker_scratch.strand_scratch, &mut worker_scratch.across));
         }
-        let yarn = StrandMaterial::new(&self.ctx.material, self.h);
+        let strand_material = StrandMaterial::new(&self.ctx.material, self.h);
         if let Some((pool, lattice)) = self.helpers {
-            let Scratch { lanes, pins, levels, bend_factors, benches, applied_force, simd_level, .. } = scratch;
+            let Scratch { lanes, pins, levels, bend_factors, worker_scratches, applied_force, simd_level, .. } =
+                scratch;
             let finish = (!self.is_near && !self.touches).then(|| self.finish(applied_force, goes_on));
             let work = SharedStep {
-                weaver: GridStrandSolver { lattice, yarn, bend_factors, simd_level: *simd_level },
+                grid_solver: GridStrandSolver { lattice, strand_material, bend_factors, simd_level: *simd_level },
                 cells: CellMaterial::new(&self.ctx.material, self.h, bend_factors),
                 last: self.last,
                 levels: run.as_ref().map(|run| (run, &*levels)),
@@ -146,22 +154,22 @@ impl Substep<'_> {
                 slack: self.slack,
                 finish,
             };
-            grid_substep::solve(pool, lanes, benches, &work);
+            grid_substep::solve(pool, lanes, worker_scratches, &work);
             return finish.is_some();
         }
         if let Some(run) = &run {
             for band in scratch.lanes.order.bands() {
                 let Run { position, inverse_mass, .. } = scratch.lanes.band(band);
-                scratch.levels.move_band(run, band, position, inverse_mass, &mut scratch.bench.across);
+                scratch.levels.move_band(run, band, position, inverse_mass, &mut scratch.worker_scratch.across);
             }
         }
         self.solve_tethers(scratch);
         let Scratch {
             lanes,
-            beads,
+            gathered,
             ways,
             bending,
-            bench: WorkerScratch { strand_scratch, seam, bias, .. },
+            worker_scratch: WorkerScratch { strand_scratch, seam, shear_scratch, .. },
             bend_factors,
             simd_level,
             ..
@@ -170,15 +178,22 @@ impl Substep<'_> {
         let strand_packs = &self.topology.strand_packs;
         let strand_pack_solver = (!strand_packs.is_empty()).then_some(StrandPackSolver {
             strand_packs,
-            yarn,
+            strand_material,
             strand_scratch: &mut *strand_scratch,
         });
-        self.loose(false, *bending, strand_pack_solver).solve(lanes, beads, ways, *simd_level);
+        self.loose(false, *bending, strand_pack_solver).solve(lanes, gathered, ways, *simd_level);
         if let Some(lattice) = &self.topology.lattice {
             let mut run = lanes.whole();
             let mut sheet = run.sheet();
-            diagonal::solve(&mut sheet, lattice, CellMaterial::new(material, h, bend_factors), seam, bias, *simd_level);
-            GridStrandSolver { lattice, yarn, bend_factors, simd_level: *simd_level }.solve(
+            diagonal::solve(
+                &mut sheet,
+                lattice,
+                CellMaterial::new(material, h, bend_factors),
+                seam,
+                shear_scratch,
+                *simd_level,
+            );
+            GridStrandSolver { lattice, strand_material, bend_factors, simd_level: *simd_level }.solve(
                 &mut sheet,
                 self.last,
                 strand_scratch,
@@ -189,8 +204,8 @@ impl Substep<'_> {
 
     /// All springs, colour after colour.
     pub fn solve_springs(&self, scratch: &mut Scratch) {
-        let Scratch { lanes, beads, ways, bending, simd_level, .. } = scratch;
-        self.loose(true, *bending, None).solve(lanes, beads, ways, *simd_level);
+        let Scratch { lanes, gathered, ways, bending, simd_level, .. } = scratch;
+        self.loose(true, *bending, None).solve(lanes, gathered, ways, *simd_level);
     }
 
     fn loose<'a>(

@@ -126,13 +126,13 @@ impl BodyAttachments {
     pub fn begin(&mut self, lanes: &mut Lanes, topology: &Topology, ctx: &StepContext) {
         let Self { bodies, pin_motions, pulls } = self;
         pulls.clear();
-        pulls.resize(ctx.mounts.len(), (BodyImpulse::default(), BodyDisplacement::default()));
+        pulls.resize(ctx.body_attachments.len(), (BodyImpulse::default(), BodyDisplacement::default()));
         pin_motions.clear();
-        pin_motions.extend(ctx.mounted.iter().map(|it| {
+        pin_motions.extend(ctx.attached_pins.iter().map(|it| {
             let (anchor, mount) = (ctx.pin_motions[it.anchor as usize], it.mount as usize);
             let own = ctx.material.density * topology.areas[anchor.particle as usize];
             let slot = lanes.order.slot(anchor.particle);
-            let arm = anchor.start - ctx.mounts[mount].body.centre;
+            let arm = anchor.start - ctx.body_attachments[mount].body.centre;
             PinOnBody {
                 slot,
                 anchor,
@@ -145,7 +145,7 @@ impl BodyAttachments {
             }
         }));
         bodies.clear();
-        bodies.extend(ctx.mounts.iter().enumerate().map(|(mount, it)| {
+        bodies.extend(ctx.body_attachments.iter().enumerate().map(|(mount, it)| {
             let on_it = || pin_motions.iter().filter(|held| held.mount == mount).map(|held| (held.arm, held.own));
             AttachedBody::new(CombinedBody::new(&it.body, on_it), it.body.centre)
         }));
@@ -184,7 +184,7 @@ impl BodyAttachments {
             let blown = force.map_or(Vec3A::ZERO, |force| force.get(held.slot) * h);
             body.take(arm, left + blown);
         }
-        for (body, mount) in self.bodies.iter_mut().zip(ctx.mounts) {
+        for (body, mount) in self.bodies.iter_mut().zip(ctx.body_attachments) {
             body.centre = mount.body.centre + mount.way * span.end;
             body.gain(ctx.max_velocity);
             body.go_on(body.velocity, body.spin, h);
@@ -207,7 +207,7 @@ impl BodyAttachments {
             let body = &mut bodies[held.mount];
             body.take(body.turn * held.arm, pull);
         }
-        for ((body, mount), pull) in bodies.iter_mut().zip(ctx.mounts).zip(&mut *pulls) {
+        for ((body, mount), pull) in bodies.iter_mut().zip(ctx.body_attachments).zip(&mut *pulls) {
             let [velocity, spin] = body.gain(ctx.max_velocity);
             body.go_on(velocity, spin, h);
             *pull = (body.push(&mount.body), BodyDisplacement { shift: body.shift, turn: body.turn });

@@ -158,12 +158,12 @@ impl Places<'_> {
 pub(crate) fn prepare(
     bend_factors: &mut BendFactors,
     lattice: &Lattice,
-    yarn: StrandMaterial,
+    strand_material: StrandMaterial,
     lanes: &mut Lanes,
     strand_scratch: &mut StrandScratch,
     simd_level: SimdLevel,
 ) {
-    let StrandMaterial::GridView { rigidity: Some(rigidity), .. } = yarn else { return };
+    let StrandMaterial::GridView { rigidity: Some(rigidity), .. } = strand_material else { return };
     bend_factors.rest.turn(lattice, lanes, simd_level);
     let (order, level) = (lattice.order(), simd_level.level());
     let StrandSet { nodes, count, curvature: weights, .. } = &lattice.along_columns;

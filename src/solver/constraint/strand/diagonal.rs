@@ -1,5 +1,5 @@
 //! The diagonals of a lattice's cells, eight at a time: the springs against shear. Those of a sheet are strands, in
-//! [`bias`](crate::solver::constraint::strand::shear_strands).
+//! [`shear_scratch`](crate::solver::constraint::strand::shear_strands).
 //!
 //! ```text
 //!   o       o       o       row           \ falling      / rising
@@ -68,22 +68,22 @@ impl<'a> CellMaterial<'a> {
 pub(crate) fn solve(
     grid: &mut GridView,
     lattice: &Lattice,
-    yarn: CellMaterial,
+    strand_material: CellMaterial,
     seam: &mut Seam,
-    bias: &mut ShearScratch,
+    shear_scratch: &mut ShearScratch,
     simd_level: SimdLevel,
 ) {
     let bands = lattice.order().bands();
     for parity in [0, 1] {
         for band in bands.clone() {
-            solve_band(&mut grid.band(band), band, parity, lattice, yarn, bias, simd_level);
+            solve_band(&mut grid.band(band), band, parity, lattice, strand_material, shear_scratch, simd_level);
         }
     }
     for (upper, lower) in bands.clone().zip(bands.skip(1)) {
         for (band, row) in [(upper, 0), (lower, 1)] {
             seam.take(&grid.band(band), band, row);
         }
-        seam.solve(lower, lattice, yarn, bias, simd_level);
+        seam.solve(lower, lattice, strand_material, shear_scratch, simd_level);
         for (band, row) in [(upper, 0), (lower, 1)] {
             seam.put(grid.band(band).position, band, row);
         }
@@ -96,11 +96,11 @@ pub(crate) fn solve_band(
     band: Band,
     parity: usize,
     lattice: &Lattice,
-    yarn: CellMaterial,
-    bias: &mut ShearScratch,
+    strand_material: CellMaterial,
+    shear_scratch: &mut ShearScratch,
     simd_level: SimdLevel,
 ) {
-    solve_pairs(grid, band.rows, band.first, parity, lattice, yarn, bias, simd_level);
+    solve_pairs(grid, band.rows, band.first, parity, lattice, strand_material, shear_scratch, simd_level);
 }
 
 #[expect(clippy::too_many_arguments, reason = "what is solved, where, with what")]
@@ -111,14 +111,14 @@ fn solve_pairs(
     first: usize,
     parity: usize,
     lattice: &Lattice,
-    yarn: CellMaterial,
-    bias: &mut ShearScratch,
+    strand_material: CellMaterial,
+    shear_scratch: &mut ShearScratch,
     simd_level: SimdLevel,
 ) {
     let level = simd_level.level();
     let some = (parity..rows - 1).step_by(2);
-    let pairs = RowPairs { lattice, rows, first, yarn };
-    if let Some(rigidity) = yarn.rigidity {
+    let pairs = RowPairs { lattice, rows, first, strand_material };
+    if let Some(rigidity) = strand_material.rigidity {
         let some = some.clone();
         if rigidity.c > 0.0 {
             dispatch!(level, simd => pairs.solve_twists::<_, true>(simd, grid, some, rigidity));
@@ -126,14 +126,14 @@ fn solve_pairs(
             dispatch!(level, simd => pairs.solve_twists::<_, false>(simd, grid, some, rigidity));
         }
     }
-    match (yarn.is_sheet, yarn.spring.c > 0.0) {
-        _ if !yarn.spring.acts() => {}
+    match (strand_material.is_sheet, strand_material.spring.c > 0.0) {
+        _ if !strand_material.spring.acts() => {}
         (false, false) => dispatch!(level, simd => pairs.solve_diagonals::<_, false>(simd, grid, some)),
         (false, true) => dispatch!(level, simd => pairs.solve_diagonals::<_, true>(simd, grid, some)),
         // All rows at once.
         (true, _) if parity > 0 => {}
-        (true, false) => dispatch!(level, simd => pairs.solve_bias::<_, false>(simd, grid, bias)),
-        (true, true) => dispatch!(level, simd => pairs.solve_bias::<_, true>(simd, grid, bias)),
+        (true, false) => dispatch!(level, simd => pairs.solve_bias::<_, false>(simd, grid, shear_scratch)),
+        (true, true) => dispatch!(level, simd => pairs.solve_bias::<_, true>(simd, grid, shear_scratch)),
     }
 }
 
@@ -166,13 +166,13 @@ impl Seam {
         &mut self,
         below: Band,
         lattice: &Lattice,
-        yarn: CellMaterial,
-        bias: &mut ShearScratch,
+        strand_material: CellMaterial,
+        shear_scratch: &mut ShearScratch,
         simd_level: SimdLevel,
     ) {
         let Self { position, previous, inverse_mass } = self;
         let mut grid = GridView { position, previous, inverse_mass, row_masses: &[] };
-        solve_pairs(&mut grid, 2, below.first - 1, 0, lattice, yarn, bias, simd_level);
+        solve_pairs(&mut grid, 2, below.first - 1, 0, lattice, strand_material, shear_scratch, simd_level);
     }
 
     /// Puts a row back.
@@ -192,7 +192,7 @@ struct RowPairs<'a> {
     lattice: &'a Lattice,
     rows: usize,
     first: usize,
-    yarn: CellMaterial<'a>,
+    strand_material: CellMaterial<'a>,
 }
 
 impl RowPairs<'_> {
@@ -216,13 +216,13 @@ impl RowPairs<'_> {
 
     /// Solves the diagonals of a sheet as strands.
     #[inline(always)]
-    fn solve_bias<S: Simd, const DAMPED: bool>(&self, simd: S, grid: &mut GridView, bias: &mut ShearScratch) {
-        let Scaled { k, c } = self.yarn.spring;
+    fn solve_bias<S: Simd, const DAMPED: bool>(&self, simd: S, grid: &mut GridView, shear_scratch: &mut ShearScratch) {
+        let Scaled { k, c } = self.strand_material.spring;
         let Lattice { rows: stride, falling, rising, cell_shares, .. } = self.lattice;
         let shares = &cell_shares[self.first..];
         let diagonals = |rest| ShearStrands { rows: self.rows, rest, shares, stride: *stride, spring: [k, c] };
-        diagonals(&falling[self.first..]).solve::<S, false, DAMPED>(simd, grid, bias);
-        diagonals(&rising[self.first..]).solve::<S, true, DAMPED>(simd, grid, bias);
+        diagonals(&falling[self.first..]).solve::<S, false, DAMPED>(simd, grid, shear_scratch);
+        diagonals(&rising[self.first..]).solve::<S, true, DAMPED>(simd, grid, shear_scratch);
     }
 
     /// Solves the diagonals below `some` rows one by one.
@@ -254,7 +254,7 @@ impl RowPairs<'_> {
         rest: &[Lane],
         [from, to]: [usize; 2],
     ) {
-        let (count, spring) = (grid.position.len(), self.yarn.spring);
+        let (count, spring) = (grid.position.len(), self.strand_material.spring);
         let mut here = self.end::<S, DAMPED>(simd, grid, to);
         // The first particle of the row is nobody's next one.
         let mut moved_before = here.position.ahead(here.position);
@@ -288,7 +288,7 @@ impl RowPairs<'_> {
         // Each corner is in two of the cells that are solved at once: they share its mass.
         let total = 2.0 * (rigidity.k + rigidity.c);
         for row in some {
-            let mut rest = self.of_row(&self.yarn.bend_factors.rest.cells, row);
+            let mut rest = self.of_row(&self.strand_material.bend_factors.rest.cells, row);
             let mut here = self.ends::<S, DAMPED>(simd, grid, row);
             let mut pull_before = nothing;
             for (at, weight) in (0..count).step_by(self.rows).zip(self.of_row(&self.lattice.twist, row)) {

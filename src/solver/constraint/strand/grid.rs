@@ -93,7 +93,7 @@ impl StrandDirection {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GridStrandSolver<'a> {
     pub lattice: &'a Lattice,
-    pub yarn: StrandMaterial,
+    pub strand_material: StrandMaterial,
     pub bend_factors: &'a BendFactors,
     pub simd_level: SimdLevel,
 }
@@ -147,7 +147,7 @@ impl GridStrandSolver<'_> {
         let packs = self.packs(first);
         take(part.position, band, stride, packs.clone(), &mut strand_scratch.position);
         take(part.inverse_mass, band, stride, packs.clone(), &mut strand_scratch.inverse_mass);
-        if self.yarn.is_damped() {
+        if self.strand_material.is_damped() {
             take(part.previous, band, stride, packs, &mut strand_scratch.previous);
         }
     }
@@ -183,7 +183,7 @@ impl GridStrandSolver<'_> {
         for first in (0..band.rows).step_by(2 * LANES) {
             let some = first..band.rows.min(first + 2 * LANES);
             dispatch!(level, simd => take_rows(simd, position, band.rows, some.clone(), nodes, &mut strand_scratch.position));
-            if self.yarn.is_damped() {
+            if self.strand_material.is_damped() {
                 dispatch!(level, simd => take_rows(simd, previous, band.rows, some.clone(), nodes, &mut strand_scratch.previous));
             }
             let StrandScratch { rows, position: taken, previous, .. } = &mut *strand_scratch;
@@ -207,13 +207,19 @@ impl GridStrandSolver<'_> {
 
     fn run<'a>(&self, threads: &'a StrandSet, factors: &'a [Factor], rest: &'a [Block], first: usize) -> StrandRun<'a> {
         let first = first * threads.nodes;
-        StrandRun { threads, first, factors: from(factors, first), rest: from(rest, first), yarn: self.yarn }
+        StrandRun {
+            threads,
+            first,
+            factors: from(factors, first),
+            rest: from(rest, first),
+            strand_material: self.strand_material,
+        }
     }
 
     /// Solves one or two packs of threads.
     fn solve_packs(&self, pack: &mut StrandLanes, run: StrandRun, rows: &mut EliminationRows) {
         let level = self.simd_level.level();
-        match (pack.position.len() > pack.stride, self.yarn.is_stretch_damped()) {
+        match (pack.position.len() > pack.stride, self.strand_material.is_stretch_damped()) {
             (true, false) => dispatch!(level, simd => run.solve::<_, f32x16<_>, false>(simd, pack, rows)),
             (true, true) => dispatch!(level, simd => run.solve::<_, f32x16<_>, true>(simd, pack, rows)),
             (false, false) => dispatch!(level, simd => run.solve::<_, f32x8<_>, false>(simd, pack, rows)),
@@ -270,7 +276,7 @@ struct StrandRun<'a> {
     factors: &'a [Factor],
     /// What the bends of these packs are at rest, m; empty where the cloth is flat.
     rest: &'a [Block],
-    yarn: StrandMaterial,
+    strand_material: StrandMaterial,
 }
 
 impl StrandRun<'_> {
@@ -284,7 +290,7 @@ impl StrandRun<'_> {
         let Self { threads, first, .. } = *self;
         let count = threads.count;
         // What comes last is held best: stretch shows more than bending.
-        match self.yarn {
+        match self.strand_material {
             StrandMaterial::Alike { stretch, bend } => {
                 if let Some(bend) = bend {
                     pack.solve_bends::<S, F, DAMPED>(simd, count, &threads.bend[first..], bend);

@@ -79,30 +79,30 @@ impl ShearStrands<'_> {
         &self,
         simd: S,
         grid: &mut GridView,
-        bias: &mut ShearScratch,
+        shear_scratch: &mut ShearScratch,
     ) {
         let packs = grid.position.len() / self.rows;
-        bias.rows.resize(bias.rows.len().max(grid.position.len()), Default::default());
-        for springs in &mut bias.springs {
+        shear_scratch.rows.resize(shear_scratch.rows.len().max(grid.position.len()), Default::default());
+        for springs in &mut shear_scratch.springs {
             springs.clear();
             springs.resize(packs, EliminatedRow::default());
         }
-        for pulls in &mut bias.pulls {
+        for pulls in &mut shear_scratch.pulls {
             pulls.clear();
             pulls.resize(packs, SpringResponse::default());
         }
-        bias.shares.resize(bias.shares.len().max(grid.position.len()), Lane::default());
+        shear_scratch.shares.resize(shear_scratch.shares.len().max(grid.position.len()), Lane::default());
         for row in 0..self.rows - 1 {
-            self.eliminate::<S, RISING, DAMPED>(simd, grid, row, bias);
+            self.eliminate::<S, RISING, DAMPED>(simd, grid, row, shear_scratch);
         }
         for row in (0..self.rows).rev() {
-            self.substitute::<S, RISING>(simd, grid, row, bias);
+            self.substitute::<S, RISING>(simd, grid, row, shear_scratch);
         }
         for row in 1..self.rows {
             for pack in 0..packs {
                 let at = pack * self.rows + row;
                 let before = self.beside::<S, RISING>(simd, grid, at - 1, pack);
-                let place = Vec3x8::load(simd, &grid.position[at]) + before * lane(simd, &bias.shares[at]);
+                let place = Vec3x8::load(simd, &grid.position[at]) + before * lane(simd, &shear_scratch.shares[at]);
                 place.store(&mut grid.position[at]);
             }
         }
@@ -155,10 +155,10 @@ impl ShearStrands<'_> {
         simd: S,
         grid: &GridView,
         row: usize,
-        bias: &mut ShearScratch,
+        shear_scratch: &mut ShearScratch,
     ) {
         let one = f32x8::splat(simd, 1.0);
-        let [before, after] = &mut bias.springs;
+        let [before, after] = &mut shear_scratch.springs;
         for (pack, after) in after.iter_mut().enumerate() {
             let of_cell = pack * self.stride + row;
             let rest = lane(simd, &self.rest[of_cell]);
@@ -173,12 +173,12 @@ impl ShearStrands<'_> {
             let (lower, upper) = (over_pivot * spring.factor, over_pivot * last.factor);
             let inverse_pivot = one / (spring.diagonal - lower * (shared * last.factor));
             let right = spring.right + lower * last.right;
-            bias.rows[pack * self.rows + row] = [(right * inverse_pivot).into(), upper.into()];
+            shear_scratch.rows[pack * self.rows + row] = [(right * inverse_pivot).into(), upper.into()];
             let EliminatedRow { along, factor, inverse_pivot: pivot, right: side } = after;
             spring.along.store(along);
             (*factor, *pivot, *side) = (spring.factor.into(), inverse_pivot.into(), right.into());
         }
-        bias.springs.swap(0, 1);
+        shear_scratch.springs.swap(0, 1);
     }
 
     /// Finds what the springs above a row pull with. Then it is known what pulls at the row's particles: leaves their places
@@ -189,10 +189,10 @@ impl ShearStrands<'_> {
         simd: S,
         grid: &mut GridView,
         row: usize,
-        bias: &mut ShearScratch,
+        shear_scratch: &mut ShearScratch,
     ) {
         let (none, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let ShearScratch { rows, shares, pulls: [above, below], .. } = bias;
+        let ShearScratch { rows, shares, pulls: [above, below], .. } = shear_scratch;
         for pack in 0..above.len() {
             let Some(row) = row.checked_sub(1) else {
                 above[pack] = SpringResponse::default();
@@ -230,7 +230,7 @@ impl ShearStrands<'_> {
             (place * inverse).store(&mut grid.position[at]);
             shares[at] = (w * from.tension * inverse).into();
         }
-        bias.pulls.swap(0, 1);
+        shear_scratch.pulls.swap(0, 1);
     }
 }
 

@@ -86,24 +86,24 @@ fn lightness(topology: &Topology, material: &Material, lanes: &Lanes) -> f32 {
 
 /// Solves all bends, or without those that are `woven`.
 pub(crate) fn solve(
-    beads: &mut GatheredParticles,
+    gathered: &mut GatheredParticles,
     ways: &mut ChebyshevBuffers,
     topology: &Topology,
     woven: bool,
     bending: BendSolver,
     simd_level: SimdLevel,
 ) {
-    ways.begin(&beads.now);
+    ways.begin(&gathered.now);
     let level = simd_level.level();
     for shares in bending.stages.shares() {
         for batch in topology.bend_batches.iter().filter(|batch| woven || !batch.woven) {
             let bends = &topology.bends[batch.range.clone()];
             if bending.framed {
-                dispatch!(level, simd => pull_batch::<_, true>(simd, beads, &mut ways.pull, bends, bending));
+                dispatch!(level, simd => pull_batch::<_, true>(simd, gathered, &mut ways.pull, bends, bending));
             } else {
-                dispatch!(level, simd => pull_batch::<_, false>(simd, beads, &mut ways.pull, bends, bending));
+                dispatch!(level, simd => pull_batch::<_, false>(simd, gathered, &mut ways.pull, bends, bending));
             }
         }
-        dispatch!(level, simd => ways.go_on(simd, &mut beads.now, shares));
+        dispatch!(level, simd => ways.go_on(simd, &mut gathered.now, shares));
     }
 }

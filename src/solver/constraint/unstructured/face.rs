@@ -35,30 +35,35 @@ use crate::solver::{
 const CAUTION: f32 = 1.01;
 
 /// Solves the faces of one batch, which share no particle.
-pub(crate) fn solve(beads: &mut GatheredParticles, faces: &[Face], grid: &[DirectionModuli; 2], simd_level: SimdLevel) {
+pub(crate) fn solve(
+    gathered: &mut GatheredParticles,
+    faces: &[Face],
+    grid: &[DirectionModuli; 2],
+    simd_level: SimdLevel,
+) {
     let level = simd_level.level();
     if grid[0].damping > 0.0 {
-        dispatch!(level, simd => solve_batch::<_, true>(simd, beads, faces, grid));
+        dispatch!(level, simd => solve_batch::<_, true>(simd, gathered, faces, grid));
     } else {
-        dispatch!(level, simd => solve_batch::<_, false>(simd, beads, faces, grid));
+        dispatch!(level, simd => solve_batch::<_, false>(simd, gathered, faces, grid));
     }
 }
 
 #[inline(always)]
 fn solve_batch<S: Simd, const DAMPED: bool>(
     simd: S,
-    beads: &mut GatheredParticles,
+    gathered: &mut GatheredParticles,
     faces: &[Face],
     grid: &[DirectionModuli; 2],
 ) {
     let (groups, rest) = faces.as_chunks::<LANES>();
     for faces in groups {
-        solve_gathered::<S, DAMPED>(simd, beads, faces, grid);
+        solve_gathered::<S, DAMPED>(simd, gathered, faces, grid);
     }
     if !rest.is_empty() {
-        let mut faces = [Face { particles: [beads.dummy(); 3], ..Face::default() }; LANES];
+        let mut faces = [Face { particles: [gathered.dummy(); 3], ..Face::default() }; LANES];
         faces[..rest.len()].copy_from_slice(rest);
-        solve_gathered::<S, DAMPED>(simd, beads, &faces, grid);
+        solve_gathered::<S, DAMPED>(simd, gathered, &faces, grid);
     }
 }
 
@@ -72,7 +77,7 @@ struct FaceStress<S: Simd> {
 #[inline(always)]
 fn solve_gathered<S: Simd, const DAMPED: bool>(
     simd: S,
-    beads: &mut GatheredParticles,
+    gathered: &mut GatheredParticles,
     faces: &[Face; LANES],
     grid: &[DirectionModuli; 2],
 ) {
@@ -100,14 +105,14 @@ fn solve_gathered<S: Simd, const DAMPED: bool>(
         area: lane(simd, &[f0.area, f1.area, f2.area, f3.area, f4.area, f5.area, f6.area, f7.area]),
     };
     let corners =
-        [beads.end::<S, DAMPED>(simd, &a), beads.end::<S, DAMPED>(simd, &b), beads.end::<S, DAMPED>(simd, &c)];
+        [gathered.end::<S, DAMPED>(simd, &a), gathered.end::<S, DAMPED>(simd, &b), gathered.end::<S, DAMPED>(simd, &c)];
     let before = [corners[0].previous, corners[1].previous, corners[2].previous];
     let masses = [corners[0].inverse_mass, corners[1].inverse_mass, corners[2].inverse_mass];
     let now = [corners[0].position, corners[1].position, corners[2].position];
     let [at_a, at_b, at_c] = solve_abreast::<S, DAMPED>(simd, now, before, masses, cut, grid);
-    beads.put(&a, at_a, masses[0]);
-    beads.put(&b, at_b, masses[1]);
-    beads.put(&c, at_c, masses[2]);
+    gathered.put(&a, at_a, masses[0]);
+    gathered.put(&b, at_b, masses[1]);
+    gathered.put(&c, at_c, masses[2]);
 }
 
 /// Weights of the steps of one face.
@@ -333,9 +338,9 @@ mod tests {
             let points = [0, 1, 2].map(|i| [points[i].x, points[i].y, points[i].z, masses[i]]);
             points.into_iter().chain([[0.0; 4]]).collect()
         };
-        let mut beads = GatheredParticles { now: list(corners), before: list(before) };
-        solve(&mut beads, &[FACE], &DirectionModuli::both(moduli, h), simd_level);
-        [0, 1, 2].map(|i| Vec3A::from_slice(&beads.now[i]))
+        let mut gathered = GatheredParticles { now: list(corners), before: list(before) };
+        solve(&mut gathered, &[FACE], &DirectionModuli::both(moduli, h), simd_level);
+        [0, 1, 2].map(|i| Vec3A::from_slice(&gathered.now[i]))
     }
 
     proptest! {

@@ -90,18 +90,20 @@ impl BatchLaw {
 }
 
 /// Solves the springs of one batch once.
-pub(crate) fn solve(beads: &mut GatheredParticles, springs: &[Spring], law: BatchLaw, simd_level: SimdLevel) {
+pub(crate) fn solve(gathered: &mut GatheredParticles, springs: &[Spring], law: BatchLaw, simd_level: SimdLevel) {
     let level = simd_level.level();
     match (law, law.is_damped()) {
         (BatchLaw::Alike(law), false) => {
-            dispatch!(level, simd => solve_batch::<_, _, false>(simd, beads, springs, law))
+            dispatch!(level, simd => solve_batch::<_, _, false>(simd, gathered, springs, law))
         }
-        (BatchLaw::Alike(law), true) => dispatch!(level, simd => solve_batch::<_, _, true>(simd, beads, springs, law)),
+        (BatchLaw::Alike(law), true) => {
+            dispatch!(level, simd => solve_batch::<_, _, true>(simd, gathered, springs, law))
+        }
         (BatchLaw::GridView(law), false) => {
-            dispatch!(level, simd => solve_batch::<_, _, false>(simd, beads, springs, law))
+            dispatch!(level, simd => solve_batch::<_, _, false>(simd, gathered, springs, law))
         }
         (BatchLaw::GridView(law), true) => {
-            dispatch!(level, simd => solve_batch::<_, _, true>(simd, beads, springs, law))
+            dispatch!(level, simd => solve_batch::<_, _, true>(simd, gathered, springs, law))
         }
     }
 }
@@ -158,26 +160,26 @@ fn end<S: Simd>(simd: S, (position, previous, inverse_mass): &(Block, Block, Lan
 #[inline(always)]
 fn solve_batch<S: Simd, L: GatherLaws, const DAMPED: bool>(
     simd: S,
-    beads: &mut GatheredParticles,
+    gathered: &mut GatheredParticles,
     springs: &[Spring],
     laws: L,
 ) {
     let (groups, rest) = springs.as_chunks::<LANES>();
     for springs in groups {
-        solve_gathered::<S, L, DAMPED>(simd, beads, springs, laws);
+        solve_gathered::<S, L, DAMPED>(simd, gathered, springs, laws);
     }
     if !rest.is_empty() {
-        let dummy = beads.dummy();
+        let dummy = gathered.dummy();
         let mut springs = [Spring { a: dummy, b: dummy, ..Spring::default() }; LANES];
         springs[..rest.len()].copy_from_slice(rest);
-        solve_gathered::<S, L, DAMPED>(simd, beads, &springs, laws);
+        solve_gathered::<S, L, DAMPED>(simd, gathered, &springs, laws);
     }
 }
 
 #[inline(always)]
 fn solve_gathered<S: Simd, L: GatherLaws, const DAMPED: bool>(
     simd: S,
-    beads: &mut GatheredParticles,
+    gathered: &mut GatheredParticles,
     springs: &[Spring; LANES],
     laws: L,
 ) {
@@ -185,11 +187,11 @@ fn solve_gathered<S: Simd, L: GatherLaws, const DAMPED: bool>(
     let a = [s0.a, s1.a, s2.a, s3.a, s4.a, s5.a, s6.a, s7.a];
     let b = [s0.b, s1.b, s2.b, s3.b, s4.b, s5.b, s6.b, s7.b];
     let rest = [s0.rest, s1.rest, s2.rest, s3.rest, s4.rest, s5.rest, s6.rest, s7.rest];
-    let (end_a, end_b) = (beads.end::<S, DAMPED>(simd, &a), beads.end::<S, DAMPED>(simd, &b));
+    let (end_a, end_b) = (gathered.end::<S, DAMPED>(simd, &a), gathered.end::<S, DAMPED>(simd, &b));
     let law = laws.law(simd, springs);
     let [at_a, at_b] = solve_abreast::<_, _, DAMPED>(simd, end_a, end_b, lane(simd, &rest), law);
-    beads.put(&a, at_a, end_a.inverse_mass);
-    beads.put(&b, at_b, end_b.inverse_mass);
+    gathered.put(&a, at_a, end_a.inverse_mass);
+    gathered.put(&b, at_b, end_b.inverse_mass);
 }
 
 /// Strain of a spring: length over rest length, less one. Positive when stretched.
@@ -220,10 +222,10 @@ mod tests {
         let constants = BatchLaw::Alike(Scaled::new(SpringConstants { stiffness, damping }, 0.1));
         let few = &mut lanes.clone();
         solve_few(few, &springs, constants, SimdLevel::Best);
-        let mut beads = GatheredParticles::default();
-        beads.read(lanes, damping > 0.0, SimdLevel::Best);
-        solve(&mut beads, &springs, constants, SimdLevel::Best);
-        beads.write(lanes, SimdLevel::Best);
+        let mut gathered = GatheredParticles::default();
+        gathered.read(lanes, damping > 0.0, SimdLevel::Best);
+        solve(&mut gathered, &springs, constants, SimdLevel::Best);
+        gathered.write(lanes, SimdLevel::Best);
         assert_eq!(
             few.position.get(1).to_array().map(f32::to_bits),
             lanes.position.get(1).to_array().map(f32::to_bits)

@@ -39,7 +39,7 @@ impl FeatureContacts {
     }
 
     fn search_between(&mut self, cloths: &[impl ClothInStep], i: usize, j: usize) {
-        let Self { first, start, way, places, walk, leaves, pairs, is_tangled, tangles, slack, .. } = self;
+        let Self { first, start, way, places, traversal, leaves, pairs, is_tangled, tangles, slack, .. } = self;
         let side = |i: usize| {
             let particles = first[i] as usize..first[i + 1] as usize;
             ContactSide {
@@ -55,8 +55,8 @@ impl FeatureContacts {
         let (a, b) = (side(i), side(j));
         leaves.clear();
         match i == j {
-            true => walk.within(a.surface, a.places, |p, q| leaves.push((p, q))),
-            false => walk.between((a.surface, a.places), (b.surface, b.places), |p, q| leaves.push((p, q))),
+            true => traversal.within(a.surface, a.places, |p, q| leaves.push((p, q))),
+            false => traversal.between((a.surface, a.places), (b.surface, b.places), |p, q| leaves.push((p, q))),
         }
         // The more careful of the two ways.
         let mode = cloths[i].ctx().self_collision.max(cloths[j].ctx().self_collision);

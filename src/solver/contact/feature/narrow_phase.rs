@@ -3,9 +3,7 @@
 use bevy::math::{Vec3, Vec3A};
 
 use crate::solver::{
-    contact::feature::{
-        pair::{ClosestPoints, FeatureContact, Features},
-    },
+    contact::feature::pair::{ClosestPoints, FeatureContact, Features},
     geometry::{
         bvh::{
             TriangleBvh,

@@ -8,7 +8,7 @@ use crate::solver::{
     contact::feature::{
         ClothInStep,
         narrow_phase::{self, Candidate, ContactSide, Displacements, QueryMargin},
-        obstacle_geometry::{FaceStrain, ObstacleGeometry},
+        obstacle_geometry::{DeformedMesh, ObstacleGeometry},
         pair::{FeatureContact, Features},
         sharp_feature_cache::{SharpFeatureCache, distance_to, tightness},
         sink,
@@ -75,7 +75,7 @@ pub struct ObstacleSearch {
     is_inside: Vec<Option<bool>>,
     /// Number of each of the obstacle's points among all.
     number: Vec<u32>,
-    deformed: FaceStrain,
+    deformed: DeformedMesh,
     /// Sharp corners and the triangles of the cloth that they have come through.
     pierced: Vec<(u32, usize)>,
     outlines: SharpFeatureCache,
@@ -108,7 +108,7 @@ impl ObstacleSearch {
         &mut self,
         at: &ClothMotion<impl ClothInStep>,
         i: usize,
-        walk: &mut Traversal,
+        traversal: &mut Traversal,
         (fixed, pairs): (&mut Vec<ObstaclePoint>, &mut Vec<FeatureContact>),
     ) {
         let (cloth, obstacle) = (at.cloth, &at.cloth.ctx().obstacles[i]);
@@ -140,7 +140,7 @@ impl ObstacleSearch {
         let friction = cloth.ctx().material.friction * obstacle.friction;
         let reach = QueryMargin { distance, slack, friction, rest: None };
         found.clear();
-        find_at_edges(&a, &b, &reach, (walk, leaves), found, pierced);
+        find_at_edges(&a, &b, &reach, (traversal, leaves), found, pierced);
         is_inside.clear();
         is_inside.resize(if target.is_closed { position.len() } else { 0 }, None);
         let mut is_inside = |particle: u32| {
@@ -220,13 +220,13 @@ fn find_at_edges(
     a: &ContactSide,
     b: &ContactSide,
     reach: &QueryMargin,
-    (walk, leaves): (&mut Traversal, &mut Vec<(u32, u32)>),
+    (traversal, leaves): (&mut Traversal, &mut Vec<(u32, u32)>),
     found: &mut Vec<Candidate>,
     pierced: &mut Vec<(u32, usize)>,
 ) {
     leaves.clear();
     pierced.clear();
-    walk.between_sharp((a.surface, a.places), (b.surface, b.places), b.sharper_than, |p, q| leaves.push((p, q)));
+    traversal.between_sharp((a.surface, a.places), (b.surface, b.places), b.sharper_than, |p, q| leaves.push((p, q)));
     for &(p, q) in &*leaves {
         for s in a.surface.of_leaf(p) {
             for t in b.surface.of_leaf(q) {

@@ -13,13 +13,13 @@ use crate::solver::{
 
 /// A mesh whose points move within its frame.
 #[derive(Clone, Debug, Default)]
-pub struct FaceStrain {
+pub struct DeformedMesh {
     points: Vec<Vec3A>,
     way: Vec<Vec3A>,
     places: BvhBounds,
 }
 
-impl FaceStrain {
+impl DeformedMesh {
     /// Follows a mesh in the part `span` of a step.
     fn follow(&mut self, surface: &TriangleBvh, from: &[Vec3A], to: &[Vec3A], span: &Range<f32>) {
         self.points.clear();
@@ -50,7 +50,7 @@ impl<'a> ObstacleGeometry<'a> {
     pub fn of(
         obstacle: &'a Obstacle,
         span: &Range<f32>,
-        deformed: &'a mut FaceStrain,
+        deformed: &'a mut DeformedMesh,
         outline: impl FnOnce() -> &'a SharpFeatures,
     ) -> Option<Self> {
         let of_mesh = |points, surface, places, is_closed, way| {
@@ -67,7 +67,7 @@ impl<'a> ObstacleGeometry<'a> {
             }
             Shape::Mesh(MeshShape { mesh, deformed: Some([from, to]) }) => {
                 deformed.follow(&mesh.surface, from, to, span);
-                let FaceStrain { points, way, places } = deformed;
+                let DeformedMesh { points, way, places } = deformed;
                 of_mesh(points, &mesh.surface, places, mesh.is_closed, Some(way))
             }
         }

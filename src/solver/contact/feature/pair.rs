@@ -147,26 +147,26 @@ pub fn give<const N: usize>(weights: [f32; N], masses: [f32; N]) -> f32 {
 
 /// How two features part.
 #[derive(Clone, Copy, Debug)]
-pub struct Response {
+pub struct FeatureCorrection {
     pub points: [usize; 4],
     /// Weight of each point in the way from the second feature's closest point to the first's.
     pub weights: [f32; 4],
     /// Unit vector from the second feature to the first.
     pub normal: Vec3A,
     /// By how much they came too near within the substep, m.
-    pub gained: f32,
+    pub penetration: f32,
     /// By how much they part of what they were too near before, m: without gaining speed.
-    pub parted: f32,
+    pub depenetration: f32,
     /// Coulomb friction, no unit.
     pub friction: f32,
 }
 
-impl Response {
+impl FeatureCorrection {
     /// Moves the points by their weights and inverse masses, with friction against their slide. Returns what the obstacle among
     /// them got if it is a body; nothing where nothing can be moved.
     #[inline]
-    pub fn happen(&self, points: &mut FeaturePoints, body: Option<&BodyContact>) -> Option<Impulse> {
-        let Self { points: all, weights, normal, gained, parted, friction } = *self;
+    pub fn apply(&self, points: &mut FeaturePoints, body: Option<&BodyContact>) -> Option<Impulse> {
+        let Self { points: all, weights, normal, penetration, depenetration, friction } = *self;
         let places = all.map(|i| points.position[i]);
         let before = all.map(|i| points.previous[i]);
         let masses = all.map(|i| points.inverse_mass[i]);
@@ -180,8 +180,8 @@ impl Response {
         if give_along <= 0.0 {
             return None;
         }
-        let part = normal * (parted / give_along);
-        let push = gained / give_along;
+        let part = normal * (depenetration / give_along);
+        let push = penetration / give_along;
         let slide = weighted(weights, places) - weighted(weights, before);
         let (along, length) = (slide - normal * slide.dot(normal)).normalize_and_length();
         let mut change = normal * push;
@@ -234,10 +234,16 @@ impl FeatureContact {
             return None;
         }
         // What was too near before parts without gaining speed.
-        let gained = (old_gap.min(target) - gap).max(0.0);
-        let parting =
-            Response { points: all, weights, normal, gained, parted: target - gap - gained, friction: self.friction };
-        let given = parting.happen(points, body)?;
+        let penetration = (old_gap.min(target) - gap).max(0.0);
+        let parting = FeatureCorrection {
+            points: all,
+            weights,
+            normal,
+            penetration,
+            depenetration: target - gap - penetration,
+            friction: self.friction,
+        };
+        let given = parting.apply(points, body)?;
         self.gap = target;
         Some(given)
     }

@@ -89,9 +89,9 @@ fn keep_out(cloth: &impl ClothInStep, now: &mut [Vec3A], before: &mut [Vec3A], s
                 continue;
             }
             let (depth, normal) = depth_at(*place - cloth.offset());
-            let gained = depth.max(0.0) - depth_at(from).0.max(0.0);
-            if gained > 0.0 {
-                let out = pose.rotation * normal * gained;
+            let penetration = depth.max(0.0) - depth_at(from).0.max(0.0);
+            if penetration > 0.0 {
+                let out = pose.rotation * normal * penetration;
                 *place += out;
                 *now += out;
             }

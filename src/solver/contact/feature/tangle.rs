@@ -83,6 +83,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::solver::geometry::intersection::intersect;
 
     fn point() -> impl Strategy<Value = Vec3A> {
         prop::array::uniform3(-1.0_f32..1.0).prop_map(Vec3A::from)

@@ -105,7 +105,7 @@ impl MeshDistanceQuery<'_> {
     pub(crate) fn look_around<S: Simd>(&mut self, simd: S, run: &Run) {
         let is_free = run.inverse_mass[self.block].map(|w| w > 0.0);
         let regions = self.expect(run, is_free);
-        let sought = CacheKey { regions, distance: self.passage.distance };
+        let sought = CacheKey { regions, distance: self.sweep.distance };
         let known = &mut self.blocks[self.block];
         let last = known.sought.replace(sought).filter(|last| !self.is_deformed && last.distance == sought.distance);
         let is_new: [bool; LANES] = core::array::from_fn(|i| last.is_none_or(|last| last.regions[i] != regions[i]));
@@ -137,7 +137,7 @@ impl MeshDistanceQuery<'_> {
     fn expect(&mut self, run: &Run, is_free: [bool; LANES]) -> [Option<ParticleBounds>; LANES] {
         let (block, span, known) = (self.block, &self.span, &mut self.blocks[self.block]);
         let left = (1.0 - span.start) * self.dt;
-        let [start, now, end] = [self.passage.start, self.passage.end, self.end].map(|pose: Isometry3d| pose.inverse());
+        let [start, now, end] = [self.sweep.start, self.sweep.end, self.end].map(|pose: Isometry3d| pose.inverse());
         let fall = self.gravity * (0.5 * FALL * left * left);
         let mut longest: f32 = 0.0;
         for i in (0..LANES).filter(|&i| is_free[i]) {
@@ -178,7 +178,7 @@ impl MeshDistanceQuery<'_> {
             if is_deformed { ways.fold(0.0, f32::max).sqrt() * left } else { 0.0 }
         };
         let mut farthest: f32 = 0.0;
-        let distance = self.passage.distance;
+        let distance = self.sweep.distance;
         let (mut low, mut high) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
         for (i, region) in regions.iter().enumerate() {
             if let Some(ParticleBounds { centre, radius }) = region {
@@ -234,7 +234,7 @@ impl MeshDistanceQuery<'_> {
             }
             let known = clear.iter().find(|clear| centre.distance(clear.centre) < clear.radius);
             clear[i] = known.copied().unwrap_or_else(|| {
-                let farthest = CLEAR * (radius + self.passage.distance);
+                let farthest = CLEAR * (radius + self.sweep.distance);
                 let nearest = inside::nearest(centre, farthest, surface, places, points);
                 let is_inside = inside::is_inside(centre, surface, places, points);
                 EmptyBall { centre, radius: nearest.map_or(farthest, |(_, length)| length), is_inside }

@@ -79,30 +79,30 @@ fn at(place: Vec3A, corners: [Vec3A; 3], is_closed: bool) -> ParticleAtFace {
 
 /// What brings the particle in lane `i` back that went from `previous` to `position`, if it has to.
 pub(crate) fn correction(
-    sight: &MeshDistanceQuery,
+    query: &MeshDistanceQuery,
     i: usize,
-    passage: &ObstacleSweep,
+    sweep: &ObstacleSweep,
     position: Vec3A,
     previous: Vec3A,
 ) -> Option<Correction> {
-    let known = sight.known();
+    let known = query.known();
     if known.beyond[i] > 0.0 {
         return None;
     }
-    let is_closed = sight.mesh.is_closed;
-    let place = passage.end.inverse().transform_point(position);
-    let before = passage.start.inverse().transform_point(previous);
-    let [then, now] = sight.points;
+    let is_closed = query.mesh.is_closed;
+    let place = sweep.end.inverse().transform_point(position);
+    let before = sweep.start.inverse().transform_point(previous);
+    let [then, now] = query.points;
     let faces = || {
         known
             .faces
             .iter()
-            .map(|faces| MovingFace { then: sight.corners(then, faces[i]), now: sight.corners(now, faces[i]) })
+            .map(|faces| MovingFace { then: query.corners(then, faces[i]), now: query.corners(now, faces[i]) })
     };
     let mut first: Option<(f32, f32, MovingFace)> = None;
     for face in faces() {
         // Out of what is closed, particles may go.
-        if let Some((share, side)) = face.passed([before, place], SEAM * passage.distance)
+        if let Some((share, side)) = face.passed([before, place], SEAM * sweep.distance)
             && (!is_closed || side > 0.0)
             && first.is_none_or(|(least, ..)| share < least)
         {
@@ -121,18 +121,18 @@ pub(crate) fn correction(
             (now, at(before, face.then, is_closed).gap, face)
         }
     };
-    let target = passage.distance.min(old_gap + passage.parting);
+    let target = sweep.distance.min(old_gap + sweep.parting);
     if now.gap >= target {
         return None;
     }
-    let gained = (old_gap.min(target) - now.gap).max(0.0);
+    let penetration = (old_gap.min(target) - now.gap).max(0.0);
     let places = (weighted(now.weights, face.then), weighted(now.weights, face.now));
     Some(Correction {
-        normal: passage.end.rotation * now.normal,
-        gained,
-        parted: target - now.gap - gained,
-        held_back: 0.0,
-        surface_way: passage.end.transform_point(places.1) - passage.start.transform_point(places.0),
+        normal: sweep.end.rotation * now.normal,
+        penetration,
+        parted: target - now.gap - penetration,
+        clamped: 0.0,
+        surface_way: sweep.end.transform_point(places.1) - sweep.start.transform_point(places.0),
     })
 }
 

@@ -91,7 +91,7 @@ impl<S: Simd> NearestPoint<S> {
 /// its edges. Without branches, see [`on_triangle`](crate::solver::geometry::closest_point::on_triangle).
 #[inline(always)]
 fn on_triangle<N: Number>(p: Vec3Wide<N>, [a, b, c]: [Vec3Wide<N>; 3]) -> Vec3Wide<N> {
-    let (zero, one) = (p.x.like(0.0), p.x.like(1.0));
+    let (zero, one) = (p.x.broadcast(0.0), p.x.broadcast(1.0));
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (bb, cc, bc) = (ab.dot(ab), ac.dot(ac), ab.dot(ac));
     let (pb, pc) = (ab.dot(ap), ac.dot(ap));
@@ -110,12 +110,12 @@ fn on_triangle<N: Number>(p: Vec3Wide<N>, [a, b, c]: [Vec3Wide<N>; 3]) -> Vec3Wi
     };
     let (far_ab, far_ac, far_bc) = (from_a(t_ab, zero), from_a(zero, t_ac), from_a(one - t_bc, t_bc));
     let is_ac = far_ac.is_below(far_ab);
-    let far = far_ac.if_so(is_ac, far_ab);
+    let far = far_ac.select(is_ac, far_ab);
     let is_bc = far_bc.is_below(far);
-    let edge_v = (one - t_bc).if_so(is_bc, zero.if_so(is_ac, t_ab));
-    let edge_w = t_bc.if_so(is_bc, t_ac.if_so(is_ac, zero));
+    let edge_v = (one - t_bc).select(is_bc, zero.select(is_ac, t_ab));
+    let edge_w = t_bc.select(is_bc, t_ac.select(is_ac, zero));
     let is_inside = zero.is_below(u) & zero.is_below(v) & zero.is_below(w);
-    let (v, w) = (v.if_so(is_inside, edge_v), w.if_so(is_inside, edge_w));
+    let (v, w) = (v.select(is_inside, edge_v), w.select(is_inside, edge_w));
     Vec3Wide { x: one - v - w, y: v, z: w }
 }
 

@@ -31,11 +31,11 @@ pub(crate) struct Correction {
     /// Outward normal of the surface.
     pub normal: Vec3A,
     /// How far it came to be behind the surface within the substep, m.
-    pub gained: f32,
+    pub penetration: f32,
     /// How far it leaves of what it was inside before, m.
     pub parted: f32,
     /// How far it goes back that was inside before and left faster than it may, m.
-    pub held_back: f32,
+    pub clamped: f32,
     /// Way of the surface at the point of contact within the substep, m.
     pub surface_way: Vec3A,
 }
@@ -69,17 +69,17 @@ impl ObstacleSweep {
         let to = self.end.inverse().transform_point(position);
         let from = self.start.inverse().transform_point(previous);
         let (entry, surface) = self.enter(solid, from, to)?;
-        let gained = surface.normal.dot(entry - to);
+        let penetration = surface.normal.dot(entry - to);
         let was_inside = (-surface.distance).max(0.0);
-        let parted = was_inside.min(self.parting) + gained.min(0.0);
-        let held_back = if was_inside > self.parting { (-parted).max(0.0) } else { 0.0 };
-        if gained <= 0.0 && parted <= 0.0 && held_back <= 0.0 {
+        let parted = was_inside.min(self.parting) + penetration.min(0.0);
+        let clamped = if was_inside > self.parting { (-parted).max(0.0) } else { 0.0 };
+        if penetration <= 0.0 && parted <= 0.0 && clamped <= 0.0 {
             return None;
         }
-        let touched = to + surface.normal * gained;
+        let touched = to + surface.normal * penetration;
         let surface_way = self.end.transform_point(touched) - self.start.transform_point(touched);
         let normal = self.end.rotation * surface.normal;
-        Some(Correction { normal, gained: gained.max(0.0), parted: parted.max(0.0), held_back, surface_way })
+        Some(Correction { normal, penetration: penetration.max(0.0), parted: parted.max(0.0), clamped, surface_way })
     }
 
     /// Where the straight way from `from` to `to` enters a solid, and the surface there. Sphere tracing (Hart 1996).

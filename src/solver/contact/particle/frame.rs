@@ -7,7 +7,7 @@ use crate::solver::{contact::particle::ccd::ObstacleSweep, layout::simd::Vec3x8}
 
 /// The frame of an obstacle within one substep.
 pub(crate) trait ObstacleFrame<S: Simd>: Copy {
-    fn new(simd: S, passage: &ObstacleSweep) -> Self;
+    fn new(simd: S, sweep: &ObstacleSweep) -> Self;
 
     /// A point of the world in the frame as it is at the end.
     fn to_local(&self, point: Vec3x8<S>) -> Vec3x8<S>;
@@ -48,8 +48,8 @@ pub(crate) struct MovingFrame<S: Simd> {
 
 impl<S: Simd> ObstacleFrame<S> for TranslatedFrame<S> {
     #[inline(always)]
-    fn new(simd: S, passage: &ObstacleSweep) -> Self {
-        Self { origin: Vec3x8::splat(simd, passage.end.translation.to_array()) }
+    fn new(simd: S, sweep: &ObstacleSweep) -> Self {
+        Self { origin: Vec3x8::splat(simd, sweep.end.translation.to_array()) }
     }
 
     #[inline(always)]
@@ -92,8 +92,8 @@ impl<S: Simd> RotatedFrame<S> {
 
 impl<S: Simd> ObstacleFrame<S> for RotatedFrame<S> {
     #[inline(always)]
-    fn new(simd: S, passage: &ObstacleSweep) -> Self {
-        Self::at(simd, &passage.end)
+    fn new(simd: S, sweep: &ObstacleSweep) -> Self {
+        Self::at(simd, &sweep.end)
     }
 
     #[inline(always)]
@@ -120,8 +120,8 @@ impl<S: Simd> ObstacleFrame<S> for RotatedFrame<S> {
 
 impl<S: Simd> ObstacleFrame<S> for MovingFrame<S> {
     #[inline(always)]
-    fn new(simd: S, passage: &ObstacleSweep) -> Self {
-        let ObstacleSweep { start, end, .. } = passage;
+    fn new(simd: S, sweep: &ObstacleSweep) -> Self {
+        let ObstacleSweep { start, end, .. } = sweep;
         let turn = Mat3A::from_quat(end.rotation) - Mat3A::from_quat(start.rotation);
         let between = RotatedFrame::of(simd, &turn, end.translation - start.translation);
         Self { start: RotatedFrame::at(simd, start), end: RotatedFrame::at(simd, end), between }

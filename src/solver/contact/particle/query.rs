@@ -39,7 +39,7 @@ pub(crate) trait DistanceQuery {
     /// The correction of the particle in lane `i` that went from `previous` to `position` and sees another side of the shape
     /// than before: it came through something thin or sharp, or went by. Seen from the new side, it would be left on the wrong
     /// one.
-    fn correction(&self, i: usize, passage: &ObstacleSweep, position: Vec3A, previous: Vec3A) -> Option<Correction>;
+    fn correction(&self, i: usize, sweep: &ObstacleSweep, position: Vec3A, previous: Vec3A) -> Option<Correction>;
 }
 
 /// A solid: the same for all.
@@ -81,7 +81,7 @@ impl<F: SignedDistanceField> DistanceQuery for UniformField<F> {
         Vec3x8::splat(simd, [0.0; 3])
     }
 
-    fn correction(&self, _: usize, passage: &ObstacleSweep, position: Vec3A, previous: Vec3A) -> Option<Correction> {
-        passage.correction(&self.0, position, previous)
+    fn correction(&self, _: usize, sweep: &ObstacleSweep, position: Vec3A, previous: Vec3A) -> Option<Correction> {
+        sweep.correction(&self.0, position, previous)
     }
 }

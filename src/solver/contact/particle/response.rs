@@ -47,8 +47,8 @@ impl Response for Kinematic {
         _: &mut Bodies,
         _: usize,
     ) -> (Vec3x8<S>, Vec3x8<S>) {
-        let Contacts8 { place, before, touches, normal, gained, parted, held_back, slide, .. } = *touching;
-        let (squared, hold) = (slide.dot(slide), gained * friction);
+        let Contacts8 { place, before, touches, normal, penetration, parted, clamped, slide, .. } = *touching;
+        let (squared, hold) = (slide.dot(slide), penetration * friction);
         let slides = squared.simd_gt(hold * hold);
         let mut held = slide;
         if slides.any_true() {
@@ -56,7 +56,7 @@ impl Response for Kinematic {
         }
         let parting = normal * parted;
         (
-            (place + normal * (gained - held_back) + parting - held).or(touches, place),
+            (place + normal * (penetration - clamped) + parting - held).or(touches, place),
             (before + parting).or(touches, before),
         )
     }
@@ -75,12 +75,12 @@ impl Response for Dynamic {
         bodies: &mut Bodies,
         obstacle: usize,
     ) -> (Vec3x8<S>, Vec3x8<S>) {
-        let Contacts8 { place, before, inverse_mass, touches, normal, gained, parted, held_back, slide, .. } =
+        let Contacts8 { place, before, inverse_mass, touches, normal, penetration, parted, clamped, slide, .. } =
             *touching;
         let Some(body) = bodies.get(obstacle) else { return (place, before) };
         let zero = f32x8::splat(simd, 0.0);
         let count = touches.to_bitmask().count_ones() as f32;
-        let beside = place + normal * gained - Vec3x8::splat(simd, body.centre.to_array());
+        let beside = place + normal * penetration - Vec3x8::splat(simd, body.centre.to_array());
         let inertia = body.inverse_inertia;
         let axes = [
             Vec3x8::splat(simd, inertia.x_axis.to_array()),
@@ -88,7 +88,7 @@ impl Response for Dynamic {
             Vec3x8::splat(simd, inertia.z_axis.to_array()),
         ];
         let own = inverse_mass + count * body.inverse_mass;
-        let lambda = gained / (own + swing(beside, normal, &axes) * count);
+        let lambda = penetration / (own + swing(beside, normal, &axes) * count);
         let length = slide.dot(slide).sqrt();
         let slides = touches & length.simd_gt(SHORTEST);
         let along = slide * (f32x8::splat(simd, 1.0) / length);
@@ -101,7 +101,7 @@ impl Response for Dynamic {
         bodies.push(obstacle, -sum(push), -sum(lever));
         let parting = normal * parted;
         (
-            (place + push * inverse_mass - normal * held_back + parting).or(touches, place),
+            (place + push * inverse_mass - normal * clamped + parting).or(touches, place),
             (before + parting).or(touches, before),
         )
     }
@@ -135,21 +135,21 @@ pub(crate) fn one(
     bodies: &mut Bodies,
     obstacle: usize,
 ) {
-    let Correction { normal, gained, parted, held_back, surface_way } = *correction;
+    let Correction { normal, penetration, parted, clamped, surface_way } = *correction;
     let way = *position - *previous - surface_way;
     let slide = way - normal * way.dot(normal);
-    let beside = |centre: Vec3A| *position + normal * gained - centre;
+    let beside = |centre: Vec3A| *position + normal * penetration - centre;
     let meets = |direction: Vec3A| {
         let of_body = bodies.get(obstacle).map_or(0.0, |body| body.inverse_mass_at(beside(body.centre), direction));
         inverse_mass + of_body
     };
-    let lambda = gained / meets(normal);
+    let lambda = penetration / meets(normal);
     let (along, length) = slide.normalize_and_length();
     let drag = (length / meets(along)).min(lambda * friction);
     let push = normal * lambda - along * drag;
     if let Some(centre) = bodies.get(obstacle).map(|body| body.centre) {
         bodies.push(obstacle, -push, -beside(centre).cross(push));
     }
-    *position += push * inverse_mass + normal * (parted - held_back);
+    *position += push * inverse_mass + normal * (parted - clamped);
     *previous += normal * parted;
 }

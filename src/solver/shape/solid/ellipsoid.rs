@@ -72,34 +72,34 @@ impl SignedDistanceField for Ellipsoid {
     #[inline(always)]
     fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let some = point.x;
-        let (one, middle) = (some.like(1.0), some.like(NEAREST_TO_MIDDLE));
+        let (one, middle) = (some.broadcast(1.0), some.broadcast(NEAREST_TO_MIDDLE));
         // In lengths of the longest half.
         let size = self.half_size.max_element();
         let r = (self.half_size / size).max(Vec3::splat(THINNEST));
         // r_i² less the least of them: zero along the shortest axis.
         let d = (r - r.min_element()) * (r + r.min_element());
-        let off_middle = |p: N, d: f32| if d > 0.0 { p } else { middle.if_so(p.size().is_below(middle), p) };
-        let p = point * some.like(1.0 / size);
+        let off_middle = |p: N, d: f32| if d > 0.0 { p } else { middle.select(p.absolute().is_below(middle), p) };
+        let p = point * some.broadcast(1.0 / size);
         let p = Vec3Wide { x: off_middle(p.x, d.x), y: off_middle(p.y, d.y), z: off_middle(p.z, d.z) };
-        let rp = Vec3Wide { x: p.x.size() * r.x, y: p.y.size() * r.y, z: p.z.size() * r.z };
+        let rp = Vec3Wide { x: p.x.absolute() * r.x, y: p.y.absolute() * r.y, z: p.z.absolute() * r.z };
         // The roots of fewer or lesser summands: that of each alone, and that of all with the greatest d.
         let mut s = (rp.x - d.x).at_least(rp.y - d.y).at_least(rp.z - d.z);
-        s = s.at_least(rp.dot(rp).root() - d.max_element());
+        s = s.at_least(rp.dot(rp).square_root() - d.max_element());
         for _ in 0..ITERATIONS {
             let pole = Vec3Wide { x: one / (s + d.x), y: one / (s + d.y), z: one / (s + d.z) };
             let x = Vec3Wide { x: rp.x * pole.x, y: rp.y * pole.y, z: rp.z * pole.z };
             let g = x.dot(x);
-            let is_below = some.like(CLOSE).is_below(g);
+            let is_below = some.broadcast(CLOSE).is_below(g);
             if !N::is_any(is_below) {
                 break;
             }
             let x = Vec3Wide { x: x.x * x.x, y: x.y * x.y, z: x.z * x.z };
-            s = (s + g * (g.root() - 1.0) / x.dot(pole)).if_so(is_below, s);
+            s = (s + g * (g.square_root() - 1.0) / x.dot(pole)).select(is_below, s);
         }
         let out = Vec3Wide { x: p.x / (s + d.x), y: p.y / (s + d.y), z: p.z / (s + d.z) };
         let reached = Vec3Wide { x: out.x * r.x, y: out.y * r.y, z: out.z * r.z };
-        let scale = one / out.dot(out).root();
-        let distance = (p.dot(out) - reached.dot(reached).root()) * scale;
+        let scale = one / out.dot(out).square_root();
+        let distance = (p.dot(out) - reached.dot(reached).square_root()) * scale;
         SignedDistance { distance: distance * size, normal: out * scale }
     }
 }

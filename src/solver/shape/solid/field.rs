@@ -33,44 +33,47 @@ pub(crate) trait SignedDistanceField: Copy {
 impl SignedDistanceField for Sphere {
     #[inline(always)]
     fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
-        ball(point, point.x.like(self.radius))
+        ball(point, point.x.broadcast(self.radius))
     }
 }
 
 /// The centre is as far from all sides: any direction will do.
 #[inline(always)]
 fn ball<N: Number>(point: Vec3Wide<N>, radius: N) -> SignedDistance<N> {
-    let length = point.dot(point).root();
-    let scale = point.x.like(1.0) / length;
-    let (zero, one) = (point.x.like(0.0), point.x.like(1.0));
-    let is_long = zero.like(SHORTEST).is_below(length);
+    let length = point.dot(point).square_root();
+    let scale = point.x.broadcast(1.0) / length;
+    let (zero, one) = (point.x.broadcast(0.0), point.x.broadcast(1.0));
+    let is_long = zero.broadcast(SHORTEST).is_below(length);
     SignedDistance {
         distance: length - radius,
-        normal: (point * scale).if_so(is_long, Vec3Wide { x: zero, y: one, z: zero }),
+        normal: (point * scale).select(is_long, Vec3Wide { x: zero, y: one, z: zero }),
     }
 }
 
 impl SignedDistanceField for Cuboid {
     #[inline(always)]
     fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
-        let (half, zero) = (self.half_size, point.x.like(0.0));
-        let (x, y, z) = (point.x.size() - half.x, point.y.size() - half.y, point.z.size() - half.z);
+        let (half, zero) = (self.half_size, point.x.broadcast(0.0));
+        let (x, y, z) = (point.x.absolute() - half.x, point.y.absolute() - half.y, point.z.absolute() - half.z);
         let outside = Vec3Wide { x: x.at_least(zero), y: y.at_least(zero), z: z.at_least(zero) };
-        let length = outside.dot(outside).root();
-        let is_outside = zero.like(SHORTEST).is_below(length);
+        let length = outside.dot(outside).square_root();
+        let is_outside = zero.broadcast(SHORTEST).is_below(length);
         // Inside, the nearest face.
         let depth = x.at_least(y).at_least(z);
         let (is_y, is_z) = (x.is_below(depth), x.at_least(y).is_below(depth));
-        let one = zero.like(1.0);
-        let axis =
-            Vec3Wide { x: zero.if_so(is_y, one), y: zero.if_so(is_z, one.if_so(is_y, zero)), z: one.if_so(is_z, zero) };
-        let normal = (outside * (one / length)).if_so(is_outside, axis);
+        let one = zero.broadcast(1.0);
+        let axis = Vec3Wide {
+            x: zero.select(is_y, one),
+            y: zero.select(is_z, one.select(is_y, zero)),
+            z: one.select(is_z, zero),
+        };
+        let normal = (outside * (one / length)).select(is_outside, axis);
         SignedDistance {
-            distance: length.if_so(is_outside, depth),
+            distance: length.select(is_outside, depth),
             normal: Vec3Wide {
-                x: (-normal.x).if_so(point.x.is_below(zero), normal.x),
-                y: (-normal.y).if_so(point.y.is_below(zero), normal.y),
-                z: (-normal.z).if_so(point.z.is_below(zero), normal.z),
+                x: (-normal.x).select(point.x.is_below(zero), normal.x),
+                y: (-normal.y).select(point.y.is_below(zero), normal.y),
+                z: (-normal.z).select(point.z.is_below(zero), normal.z),
             },
         }
     }
@@ -79,9 +82,9 @@ impl SignedDistanceField for Cuboid {
 impl SignedDistanceField for Capsule3d {
     #[inline(always)]
     fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
-        let end = point.y.like(self.half_length);
+        let end = point.y.broadcast(self.half_length);
         let on_axis = point.y.at_least(-end).at_most(end);
-        ball(Vec3Wide { y: point.y - on_axis, ..point }, end.like(self.radius))
+        ball(Vec3Wide { y: point.y - on_axis, ..point }, end.broadcast(self.radius))
     }
 }
 
@@ -93,25 +96,26 @@ impl SignedDistanceField for TaperedCapsule {
         let some = point.x;
         // Sine of the angle between the cone's side and the axis.
         let sine = (radius_bottom - radius_top) / (2.0 * half_length);
-        if sine.is_nan() || sine.abs() >= 1.0 {
+        if sine.is_nan() || sine.absolute() >= 1.0 {
             // One ball has the other within.
             let (radius, end) =
                 if radius_top > radius_bottom { (radius_top, half_length) } else { (radius_bottom, -half_length) };
-            return ball(Vec3Wide { y: point.y - end, ..point }, some.like(radius));
+            return ball(Vec3Wide { y: point.y - end, ..point }, some.broadcast(radius));
         }
         let cosine = (1.0 - sine * sine).sqrt();
         let (across, from_axis) = axial(point);
         let height = point.y + half_length;
         let along = height * cosine - from_axis * sine;
-        let (is_low, is_side) = (along.is_below(some.like(0.0)), along.is_below(some.like(cosine * 2.0 * half_length)));
+        let (is_low, is_side) =
+            (along.is_below(some.broadcast(0.0)), along.is_below(some.broadcast(cosine * 2.0 * half_length)));
         let (end, radius) = (
-            some.like(-half_length).if_so(is_low, some.like(half_length)),
-            some.like(radius_bottom).if_so(is_low, some.like(radius_top)),
+            some.broadcast(-half_length).select(is_low, some.broadcast(half_length)),
+            some.broadcast(radius_bottom).select(is_low, some.broadcast(radius_top)),
         );
         let ends = ball(Vec3Wide { y: point.y - end, ..point }, radius);
         let distance = from_axis * cosine + height * sine - radius_bottom;
-        let side = SignedDistance { distance, normal: outward(across, some.like(cosine), some.like(sine)) };
-        side.if_so(is_side & !is_low, ends)
+        let side = SignedDistance { distance, normal: outward(across, some.broadcast(cosine), some.broadcast(sine)) };
+        side.select(is_side & !is_low, ends)
     }
 }
 
@@ -119,18 +123,18 @@ impl SignedDistanceField for Cylinder {
     #[inline(always)]
     fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let (across, from_axis) = axial(point);
-        let (zero, one) = (point.x.like(0.0), point.x.like(1.0));
-        let (side, end) = (from_axis - self.radius, point.y.size() - self.half_height);
+        let (zero, one) = (point.x.broadcast(0.0), point.x.broadcast(1.0));
+        let (side, end) = (from_axis - self.radius, point.y.absolute() - self.half_height);
         let (beside, above) = (side.at_least(zero), end.at_least(zero));
-        let length = (beside * beside + above * above).root();
-        let none = zero.like(SHORTEST);
+        let length = (beside * beside + above * above).square_root();
+        let none = zero.broadcast(SHORTEST);
         let is_corner = none.is_below(side) & none.is_below(end);
         let is_side = end.is_below(side);
-        let (out, up) = (one.if_so(is_side, zero), zero.if_so(is_side, one));
+        let (out, up) = (one.select(is_side, zero), zero.select(is_side, one));
         let scale = one / length;
-        let (out, up) = ((beside * scale).if_so(is_corner, out), (above * scale).if_so(is_corner, up));
-        let up = (-up).if_so(point.y.is_below(zero), up);
-        SignedDistance { distance: length.if_so(is_corner, side.at_least(end)), normal: outward(across, out, up) }
+        let (out, up) = ((beside * scale).select(is_corner, out), (above * scale).select(is_corner, up));
+        let up = (-up).select(point.y.is_below(zero), up);
+        SignedDistance { distance: length.select(is_corner, side.at_least(end)), normal: outward(across, out, up) }
     }
 }
 
@@ -138,7 +142,7 @@ impl SignedDistanceField for Cone {
     #[inline(always)]
     fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let some = point.x;
-        let zero = some.like(0.0);
+        let zero = some.broadcast(0.0);
         let (across, from_axis) = axial(point);
         let half_height = self.height / 2.0;
         let down = Vec2::new(self.radius, -self.height);
@@ -147,25 +151,26 @@ impl SignedDistanceField for Cone {
         // Below the tip, and below the base.
         let (below, beyond_base) = (point.y - half_height, -point.y - half_height);
         let beyond_side = from_axis * side_normal.x + below * side_normal.y;
-        let along =
-            ((from_axis * down.x + below * down.y) * (1.0 / (slant * slant))).at_least(zero).at_most(some.like(1.0));
+        let along = ((from_axis * down.x + below * down.y) * (1.0 / (slant * slant)))
+            .at_least(zero)
+            .at_most(some.broadcast(1.0));
         let (side_x, side_y) = (from_axis - along * down.x, below - along * down.y);
-        let (base_x, base_y) = (from_axis - from_axis.at_most(some.like(self.radius)), -beyond_base);
+        let (base_x, base_y) = (from_axis - from_axis.at_most(some.broadcast(self.radius)), -beyond_base);
         let is_side = (side_x * side_x + side_y * side_y).is_below(base_x * base_x + base_y * base_y);
-        let (x, y) = (side_x.if_so(is_side, base_x), side_y.if_so(is_side, base_y));
-        let length = (x * x + y * y).root();
-        let scale = some.like(1.0) / length;
+        let (x, y) = (side_x.select(is_side, base_x), side_y.select(is_side, base_y));
+        let length = (x * x + y * y).square_root();
+        let scale = some.broadcast(1.0) / length;
         let is_inside = !zero.is_below(beyond_side) & !zero.is_below(beyond_base);
         // Inside, and on the surface itself, which has no direction to it, the normal of side or base.
         let is_flat_side = beyond_base.is_below(beyond_side);
         let (flat_x, flat_y) = (
-            some.like(side_normal.x).if_so(is_flat_side, zero),
-            some.like(side_normal.y).if_so(is_flat_side, some.like(-1.0)),
+            some.broadcast(side_normal.x).select(is_flat_side, zero),
+            some.broadcast(side_normal.y).select(is_flat_side, some.broadcast(-1.0)),
         );
-        let has_direction = !is_inside & some.like(SHORTEST).is_below(length);
-        let (out, up) = ((x * scale).if_so(has_direction, flat_x), (y * scale).if_so(has_direction, flat_y));
+        let has_direction = !is_inside & some.broadcast(SHORTEST).is_below(length);
+        let (out, up) = ((x * scale).select(has_direction, flat_x), (y * scale).select(has_direction, flat_y));
         let depth = beyond_side.at_least(beyond_base);
-        SignedDistance { distance: depth.if_so(is_inside, length), normal: outward(across, out, up) }
+        SignedDistance { distance: depth.select(is_inside, length), normal: outward(across, out, up) }
     }
 }
 
@@ -174,7 +179,7 @@ impl SignedDistanceField for InfinitePlane3d {
     fn sample<N: Number>(&self, point: Vec3Wide<N>) -> SignedDistance<N> {
         let normal: Vec3A = Vec3::from(self.normal).into();
         let some = point.x;
-        let normal = Vec3Wide { x: some.like(normal.x), y: some.like(normal.y), z: some.like(normal.z) };
+        let normal = Vec3Wide { x: some.broadcast(normal.x), y: some.broadcast(normal.y), z: some.broadcast(normal.z) };
         SignedDistance { distance: normal.dot(point), normal }
     }
 }
@@ -182,19 +187,19 @@ impl SignedDistanceField for InfinitePlane3d {
 impl<N: Number> SignedDistance<N> {
     /// `self` where that is so, else `other`.
     #[inline(always)]
-    fn if_so(self, so: N::Mask, other: Self) -> Self {
-        Self { distance: self.distance.if_so(so, other.distance), normal: self.normal.if_so(so, other.normal) }
+    fn select(self, so: N::Mask, other: Self) -> Self {
+        Self { distance: self.distance.select(so, other.distance), normal: self.normal.select(so, other.normal) }
     }
 }
 
 /// Direction along X and Z from the axis Y to a point, and the distance. On the axis any direction will do.
 #[inline(always)]
 fn axial<N: Number>(point: Vec3Wide<N>) -> ((N, N), N) {
-    let from_axis = (point.x * point.x + point.z * point.z).root();
-    let (zero, one) = (point.x.like(0.0), point.x.like(1.0));
-    let is_off = zero.like(SHORTEST).is_below(from_axis);
+    let from_axis = (point.x * point.x + point.z * point.z).square_root();
+    let (zero, one) = (point.x.broadcast(0.0), point.x.broadcast(1.0));
+    let is_off = zero.broadcast(SHORTEST).is_below(from_axis);
     let scale = one / from_axis;
-    (((point.x * scale).if_so(is_off, one), (point.z * scale).if_so(is_off, zero)), from_axis)
+    (((point.x * scale).select(is_off, one), (point.z * scale).select(is_off, zero)), from_axis)
 }
 
 /// So far from the axis, and so far along it.

@@ -98,16 +98,16 @@ impl Cells {
         let Self { rows, stride, rising, position, previous, inverse_mass, rest, shares, .. } = self;
         let diagonals = ShearStrands { rows: *rows, rest, shares, stride: *stride, spring };
         let grid = &mut GridView { position, previous, inverse_mass, row_masses: &[] };
-        let bias = &mut ShearScratch::default();
+        let shear_scratch = &mut ShearScratch::default();
         match (*rising, spring[1] > 0.0) {
             (false, false) => dispatch!(simd_level.level(), simd =>
-                diagonals.solve::<_, false, false>(simd, grid, bias)),
+                diagonals.solve::<_, false, false>(simd, grid, shear_scratch)),
             (false, true) => dispatch!(simd_level.level(), simd =>
-                diagonals.solve::<_, false, true>(simd, grid, bias)),
+                diagonals.solve::<_, false, true>(simd, grid, shear_scratch)),
             (true, false) => dispatch!(simd_level.level(), simd =>
-                diagonals.solve::<_, true, false>(simd, grid, bias)),
+                diagonals.solve::<_, true, false>(simd, grid, shear_scratch)),
             (true, true) => dispatch!(simd_level.level(), simd =>
-                diagonals.solve::<_, true, true>(simd, grid, bias)),
+                diagonals.solve::<_, true, true>(simd, grid, shear_scratch)),
         }
     }
 }

@@ -19,26 +19,26 @@ const FOLDED: f32 = 3.0;
 #[inline(always)]
 pub fn pull_batch<S: Simd, const FRAMED: bool>(
     simd: S,
-    beads: &GatheredParticles,
+    gathered: &GatheredParticles,
     pull: &mut [[f32; 4]],
     bends: &[Bend],
     bending: BendSolver,
 ) {
     let (groups, rest) = bends.as_chunks::<LANES>();
     for bends in groups {
-        pull_eight::<S, FRAMED>(simd, beads, pull, bends, bending);
+        pull_eight::<S, FRAMED>(simd, gathered, pull, bends, bending);
     }
     if !rest.is_empty() {
-        let mut bends = [Bend { particles: [beads.dummy(); 4], ..Bend::default() }; LANES];
+        let mut bends = [Bend { particles: [gathered.dummy(); 4], ..Bend::default() }; LANES];
         bends[..rest.len()].copy_from_slice(rest);
-        pull_eight::<S, FRAMED>(simd, beads, pull, &bends, bending);
+        pull_eight::<S, FRAMED>(simd, gathered, pull, &bends, bending);
     }
 }
 
 #[inline(always)]
 fn pull_eight<S: Simd, const FRAMED: bool>(
     simd: S,
-    beads: &GatheredParticles,
+    gathered: &GatheredParticles,
     pull: &mut [[f32; 4]],
     bends: &[Bend; LANES],
     bending: BendSolver,
@@ -63,12 +63,12 @@ fn pull_eight<S: Simd, const FRAMED: bool>(
         [&b0.weights, &b1.weights, &b2.weights, &b3.weights, &b4.weights, &b5.weights, &b6.weights, &b7.weights];
     let [_, w1, w2, w3] = apart(simd, eight);
     let weights = [w1, w2, w3];
-    let arms = BendElement8::of(simd, &beads.now, &particles);
+    let arms = BendElement8::of(simd, &gathered.now, &particles);
     let pulls = if FRAMED {
         let rest =
             Vec3x8 { x: lane(simd, &each!(rest[0])), y: lane(simd, &each!(rest[1])), z: lane(simd, &each!(rest[2])) };
         // Nobody reads it where nothing is damped, and nobody has written it then.
-        let before = if bending.c > 0.0 { BendElement8::of(simd, &beads.before, &particles) } else { arms };
+        let before = if bending.c > 0.0 { BendElement8::of(simd, &gathered.before, &particles) } else { arms };
         arms.pull_framed(simd, before, weights, rest, bending)
     } else {
         arms.pull(weights, bending)
@@ -95,14 +95,14 @@ struct BendElement8<S: Simd>([Vec3x8<S>; 3]);
 
 impl<S: Simd> BendElement8<S> {
     #[inline(always)]
-    fn of(simd: S, beads: &[[f32; 4]], [p0, p1, p2, p3]: &[[u32; LANES]; 4]) -> Self {
-        let [x, y, z, _] = gather(simd, beads, p0);
+    fn of(simd: S, gathered: &[[f32; 4]], [p0, p1, p2, p3]: &[[u32; LANES]; 4]) -> Self {
+        let [x, y, z, _] = gather(simd, gathered, p0);
         let first = Vec3x8 { x, y, z };
-        let [x, y, z, _] = gather(simd, beads, p1);
+        let [x, y, z, _] = gather(simd, gathered, p1);
         let one = Vec3x8 { x, y, z } - first;
-        let [x, y, z, _] = gather(simd, beads, p2);
+        let [x, y, z, _] = gather(simd, gathered, p2);
         let two = Vec3x8 { x, y, z } - first;
-        let [x, y, z, _] = gather(simd, beads, p3);
+        let [x, y, z, _] = gather(simd, gathered, p3);
         Self([one, two, Vec3x8 { x, y, z } - first])
     }
 
@@ -201,13 +201,13 @@ mod tests {
             let points = points.map(|p| [p.x, p.y, p.z, 1.0]);
             points.into_iter().cycle().take(4 * COUNT).chain([[0.0; 4]]).collect()
         };
-        let beads = GatheredParticles { now: list(now), before: list(before) };
-        let mut pull = vec![[0.0; 4]; beads.now.len()];
+        let gathered = GatheredParticles { now: list(now), before: list(before) };
+        let mut pull = vec![[0.0; 4]; gathered.now.len()];
         for simd_level in [SimdLevel::Best, SimdLevel::Baseline] {
             pull.fill([0.0; 4]);
             dispatch!(simd_level.level(), simd => match bending.framed {
-                true => pull_batch::<_, true>(simd, &beads, &mut pull, &bends, bending),
-                false => pull_batch::<_, false>(simd, &beads, &mut pull, &bends, bending),
+                true => pull_batch::<_, true>(simd, &gathered, &mut pull, &bends, bending),
+                false => pull_batch::<_, false>(simd, &gathered, &mut pull, &bends, bending),
             });
         }
         assert!(pull[..4 * COUNT].chunks(4).all(|four| four == &pull[..4]) && pull[4 * COUNT] == [0.0; 4]);

@@ -105,7 +105,7 @@ proptest! {
         places in prop::array::uniform4(point()),
         inverse_mass in masses(),
         nearer in 0.05_f32..0.9,
-        parted in prop::option::of(0.0_f32..0.1),
+        depenetration in prop::option::of(0.0_f32..0.1),
     ) {
         let ClosestPoints { weights, between } = features.nearest(places);
         let gap = between.length();
@@ -116,8 +116,8 @@ proptest! {
         prop_assume!(give > 1e-4 && most < 0.9 * LONGEST_LEVER * give);
         let distance = gap / nearer;
         // Before, they were as near; or as far as they should be.
-        let (old_gap, most_parted) = match parted {
-            Some(parted) => (gap, parted),
+        let (old_gap, most_parted) = match depenetration {
+            Some(depenetration) => (gap, depenetration),
             None => (distance, 0.0),
         };
         let mut points = points(places, places, inverse_mass);
@@ -130,8 +130,8 @@ proptest! {
             prop_assert!(off < 1e-4, "{i}: {off} m");
             // What parts of what was too near before gains no speed.
             let way = points.position[i] - points.previous[i];
-            let gained = if parted.is_some() { DVec3::ZERO } else { expected[i] };
-            prop_assert!(way.as_dvec3().distance(gained) < 1e-4, "{i}: {way} for {gained}");
+            let penetration = if depenetration.is_some() { DVec3::ZERO } else { expected[i] };
+            prop_assert!(way.as_dvec3().distance(penetration) < 1e-4, "{i}: {way} for {penetration}");
         }
         let after = weighted(weights, core::array::from_fn(|i| points.position[numbers(features)[i] as usize]));
         prop_assert!((after.dot(between / gap) - gap - by).abs() < 1e-4);

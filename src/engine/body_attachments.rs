@@ -33,14 +33,14 @@ pub(crate) fn mount_pins(
                 let known = known.map(|known| known as u32);
                 known.or_else(|| {
                     let mount = mount(bodies, entity, &mover, origin)?;
-                    work.mounts.push(mount);
+                    work.body_attachments.push(mount);
                     work.mount_owners.push(entity);
-                    Some(work.mounts.len() as u32 - 1)
+                    Some(work.body_attachments.len() as u32 - 1)
                 })
             }),
         };
         latest = Some((pin.target, mount));
-        work.mounted.extend(mount.map(|mount| AttachedPin { anchor: number, mount }));
+        work.attached_pins.extend(mount.map(|mount| AttachedPin { anchor: number, mount }));
     }
 }
 
@@ -59,20 +59,21 @@ fn mount(bodies: &mut Bodies, entity: Entity, mover: &Mover, origin: Vec3A) -> O
 pub(crate) fn untie_mounted(mut cloths: Query<(&mut ClothState, &ClothStatus)>) {
     for (mut state, status) in &mut cloths {
         let is_known = |state: &ClothState| {
-            let mounted = state.work.mounted.iter().map(|it| state.work.pin_motions[it.anchor as usize].particle);
-            mounted.eq(state.mounted.iter().copied())
+            let attached_pins =
+                state.work.attached_pins.iter().map(|it| state.work.pin_motions[it.anchor as usize].particle);
+            attached_pins.eq(state.attached_pins.iter().copied())
         };
         if *status != ClothStatus::Ready || is_known(&state) {
             continue;
         }
         let state = &mut *state;
         let work = &state.work;
-        state.mounted.clear();
-        state.mounted.extend(work.mounted.iter().map(|it| work.pin_motions[it.anchor as usize].particle));
-        let mounted = state.mounted.clone();
-        state.keep_tethers(|pin| !mounted.contains(&pin));
+        state.attached_pins.clear();
+        state.attached_pins.extend(work.attached_pins.iter().map(|it| work.pin_motions[it.anchor as usize].particle));
+        let attached_pins = state.attached_pins.clone();
+        state.keep_tethers(|pin| !attached_pins.contains(&pin));
         let pins = &state.pins;
-        let tied = pins.iter().map(|pin| pin.particle).filter(|particle| !mounted.contains(particle));
+        let tied = pins.iter().map(|pin| pin.particle).filter(|particle| !attached_pins.contains(particle));
         state.tying = Some(Box::new(TetherBuild::begin(tied.collect())));
     }
 }
@@ -80,7 +81,7 @@ pub(crate) fn untie_mounted(mut cloths: Query<(&mut ClothState, &ClothStatus)>) 
 /// Cloth is drawn with the entity that carries it: one that it has pulled along is where it is by now.
 pub(crate) fn note_carriers(mut cloths: Query<&mut ClothState>, poses: Poses) {
     for mut state in &mut cloths {
-        if state.work.mounts.is_empty() {
+        if state.work.body_attachments.is_empty() {
             continue;
         }
         for carrier in &mut state.bypass_change_detection().carriers {
