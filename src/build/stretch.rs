@@ -64,8 +64,8 @@ pub(crate) fn stretch(
         shortest = shortest.min(ratio);
         *bend = Bend { weights: built.weights.map(|weight| weight / ratio), ..*built };
     }
-    // The square of a frequency of bending goes by the inverse fourth power of lengths.
-    topology.bend_rate = built.bend_rate / if shortest < f32::INFINITY { shortest.powi(4) } else { 1.0 };
+    // It goes by the square of the weights: the areas stay, and with them the masses.
+    topology.bend_rate = built.bend_rate / if shortest < f32::INFINITY { shortest * shortest } else { 1.0 };
     if let Some((lattice, built)) = topology.lattice.as_mut().zip(built.lattice.as_ref()) {
         stretch_lattice(lattice, built, &places);
     }

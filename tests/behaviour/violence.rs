@@ -97,6 +97,48 @@ fn damped_bends_of_a_cloth_that_is_torn_apart_by_its_pins_throw_nothing() {
 }
 
 #[test]
+fn a_stiff_strip_between_pins_that_leap_apart_comes_after_them() {
+    for columns in [3, 4] {
+        let mut app = headless();
+        let cloth = Cloth { substeps: Some(1), tether_slack: None, gravity_scale: 0.0, ..default() };
+        let fabric = Fabric {
+            density: 0.25,
+            warp_stiffness: 11_700.0,
+            weft_stiffness: 13_700.0,
+            weft_stiffening: 22.0,
+            warp_stiffening: 22.0,
+            compression: 0.03,
+            bending_rigidity: 0.0,
+            ..default()
+        };
+        let right = app.world_mut().spawn(Transform::default()).id();
+        let (last, bottom) = (columns - 1, 29 * columns);
+        let pins = Pins::indices([0, bottom]).and(Pins::indices([last, bottom + last]).to_entity(right));
+        spawn_cloth(&mut app, ClothGrid::new(0.016, 0.24, columns, 30), (cloth, fabric, pins));
+        run(&mut app, 5);
+        for frame in 0..120 {
+            let way = [0.0, 3.0, 0.01, 30.0, -2.0, 0.3][frame / 2 % 6];
+            get_mut::<Transform>(&mut app, right).translation = Vec3::new(way, 0.1 * way, 0.02 * way);
+            run(&mut app, 1);
+        }
+        assert_eq!(put_back(&app), 0, "{columns} columns");
+    }
+}
+
+#[test]
+fn a_cloth_that_is_scaled_up_bends_as_calmly_as_before() {
+    let mut app = headless();
+    let cloth = Cloth { substeps: Some(1), ..default() };
+    let fabric = Fabric { density: 0.05, bending_rigidity: 1e-4, bend_damping: 0.0, ..default() };
+    let cloth = spawn_cloth(&mut app, Circle::new(0.3).mesh().resolution(24), (cloth, fabric, Pins::indices([0, 1])));
+    run(&mut app, 5);
+    get_mut::<Transform>(&mut app, cloth).scale = Vec3::splat(2.2);
+    run(&mut app, 120);
+    assert_eq!(put_back(&app), 0);
+    assert!(farthest(&app, cloth) < 5.0, "{} m", farthest(&app, cloth));
+}
+
+#[test]
 fn a_copy_of_a_cloth_that_meets_cloth_parts_from_it() {
     for pins in [Pins::none(), Pins::indices([1]).to_world()] {
         let mut app = headless();

@@ -171,7 +171,7 @@ impl ShearStrands<'_> {
             let shared = top.inverse_mass * last.along.dot(spring.along);
             let over_pivot = shared * last.inverse_pivot;
             let (lower, upper) = (over_pivot * spring.factor, over_pivot * last.factor);
-            let inverse_pivot = one / (spring.diagonal - lower * (shared * last.factor));
+            let inverse_pivot = one / (spring.diagonal - lower * (shared * last.factor)).max(spring.least_pivot);
             let right = spring.right + lower * last.right;
             shear_scratch.rows[pack * self.rows + row] = [(right * inverse_pivot).into(), upper.into()];
             let EliminatedRow { along, factor, inverse_pivot: pivot, right: side } = after;

@@ -14,7 +14,9 @@
 //!
 //! -tj wj d(j-1)·dj mu(j-1) + |dj|² (tj (wj + w(j+1)) + 1) mu(j) - tj w(j+1) dj·d(j+1) mu(j+1) = tj |dj| (Lj - |dj|)
 //!
-//! But for the factors t, the matrix is Gram's of the directions plus a positive diagonal: elimination needs no pivoting.
+//! But for the factors t, the matrix is Gram's of the directions plus a positive diagonal: elimination needs no pivoting,
+//! and leaves |dj|² of each diagonal entry at least. Of a stiff thread between two fixed particles it leaves little more,
+//! which is less than what rounding does to numbers 1 + 2 t w as large: where that would leave less, it is set right.
 //! Particle j moves by wj (d(j-1) mu(j-1) - dj mu(j)).
 //!
 //! The directions are those before the move. A taut spring also pulls across, as much as it turns; taken from before the
@@ -87,11 +89,13 @@ pub(crate) struct StrandSprings<'a, L> {
     pub laws: L,
 }
 
-/// A spring's row of the system: its direction, its factor t on both sides, its diagonal entry and its right side.
+/// A spring's row of the system: its direction, its factor t on both sides, its diagonal entry, what elimination leaves of
+/// that at least, and its right side.
 pub(crate) struct EliminationRow<F> {
     pub along: Vec3Wide<F>,
     pub factor: F,
     pub diagonal: F,
+    pub least_pivot: F,
     pub right: F,
 }
 
@@ -130,8 +134,13 @@ impl StrandLanes<'_> {
         let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
         let last = count - 1;
         let first = self.end::<S, F, DAMPED>(simd, 0);
-        let mut closing =
-            EliminationRow { along: Vec3Wide::splat(simd, [0.0; 3]), factor: none, diagonal: one, right: none };
+        let mut closing = EliminationRow {
+            along: Vec3Wide::splat(simd, [0.0; 3]),
+            factor: none,
+            diagonal: one,
+            least_pivot: one,
+            right: none,
+        };
         let mut border = none;
         if CLOSED {
             let ends = [self.end::<S, F, DAMPED>(simd, last), first];
@@ -147,7 +156,7 @@ impl StrandLanes<'_> {
             let over_pivot = shared * inverse_pivot;
             // Of this row in the column before, and of the row before in this column.
             let (lower, upper) = (over_pivot * row.factor, over_pivot * factor_before);
-            inverse_pivot = one / (row.diagonal - lower * (shared * factor_before));
+            inverse_pivot = one / (row.diagonal - lower * (shared * factor_before)).max(row.least_pivot);
             right = row.right + lower * right;
             (right * inverse_pivot).store(&mut rows.right, j, stride);
             upper.store(&mut rows.upper, j, stride);
@@ -184,7 +193,7 @@ impl StrandLanes<'_> {
         let (none, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
         let mut closing_mu = none;
         if CLOSED {
-            closing_mu = pulling::<S, F, L>(simd, closing.right / closing.diagonal);
+            closing_mu = pulling::<S, F, L>(simd, closing.right / closing.diagonal.max(closing.least_pivot));
         }
         // What closes a ring, and what is pressed together, pushes along the direction that it had.
         let closing_push = closing.along * closing_mu;
@@ -316,6 +325,7 @@ impl<F> EliminationRow<F> {
             along: along.or(acts, Vec3Wide::splat(simd, [0.0; 3])),
             factor,
             diagonal: acts.select(squared * ((here.inverse_mass + next.inverse_mass) * factor + one), one),
+            least_pivot: acts.select(squared, one),
             right: acts.select(right, none),
         }
     }
