@@ -51,7 +51,7 @@ impl From<ClothSolver> for Method {
 pub struct Cloth {
     /// How it is moved on in time.
     pub solver: ClothSolver,
-    /// The most that threads are to be stretched, no unit, if their stiffness can hold it: 0.001 to 0.1. What
+    /// Largest strain of threads that is aimed at, no unit, if their stiffness can hold it: 0.001 to 0.1. What
     /// [`ClothSolver::Strands`] chooses [`substeps`](Self::substeps) and [`levels`](Self::levels) by, where they aren't
     /// set by hand. The smaller, the more it costs, and the livelier the cloth.
     pub max_strain: f32,
@@ -75,7 +75,7 @@ pub struct Cloth {
     /// Tethers keep every particle within the cloth's own length of its pins: the cure for cloth that stretches like
     /// rubber. [`ClothSolver::Explicit`] hasn't them.
     pub tether_slack: Option<f32>,
-    /// The most that a particle may be faster than what the cloth is pinned to, m/s, greater than 0. It keeps single
+    /// Largest speed of a particle relative to what the cloth is pinned to, m/s, greater than 0. It keeps single
     /// particles from thrashing about; 50 is faster than any storm.
     pub max_velocity: f32,
     /// Density of the air around in kg/m³. 1.225 at sea level, 0 for a vacuum.
@@ -87,7 +87,7 @@ pub struct Cloth {
     /// The most in m/s that cloth which finds itself inside of an obstacle, or too near to other cloth, leaves it by,
     /// greater than 0. 0.5 to 3: more gets out sooner, and looks like a blow.
     pub max_depenetration_velocity: f32,
-    /// What of the cloth meets itself, and other cloths for which this isn't off either. Off by default, since it costs.
+    /// How the cloth collides with itself, and with other cloths for which this isn't off either. Off by default, since it costs.
     pub self_collision: SelfCollision,
     /// Distance in m that parts of cloth keep from each other, greater than 0. 0.002 to 0.01. Parts that are nearer to each
     /// other at rest stay so. More than four edges of the mesh count as four.

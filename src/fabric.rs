@@ -50,15 +50,16 @@ pub struct Fabric {
     pub density: f32,
     /// Thickness in m. 0.0002 for silk, 0.001 for leather. Greater than zero.
     pub thickness: f32,
-    /// Force over width and strain of a strip cut along the warp, in N/m, at rest. 30 for jersey, 4000 for a tablecloth.
+    /// Stiffness of a strip that is cut along the warp and pulled: force over width and strain, in N/m, at rest. 30 for jersey,
+    /// 4000 for a tablecloth.
     /// Greater than zero.
     pub warp_stiffness: f32,
-    /// The same of a strip cut along the weft, in N/m. Greater than zero.
+    /// Stiffness of a strip that is cut along the weft and pulled: force over width and strain, in N/m. Greater than zero.
     pub weft_stiffness: f32,
     /// By how much the warp gets stiffer as it is stretched, no unit: a strip that is stretched by a strain takes
     /// `warp_stiffness * (1 + warp_stiffening * strain)` for any more. 0 for most weaves, 10 and more for knits.
     pub warp_stiffening: f32,
-    /// The same of the weft, no unit.
+    /// How much stiffer the weft becomes as it is stretched, as `warp_stiffening`, no unit.
     pub weft_stiffening: f32,
     /// Share of their stiffness that is left of threads that are pressed together, no unit, 0 to 1: threads buckle where
     /// folds would be too small for the mesh.

@@ -1,4 +1,4 @@
-//! Lays threads side by side: eight that share no particle make a braid.
+//! Lays strands side by side: eight that share no particle make a strand pack.
 
 use bevy::platform::collections::HashMap;
 
@@ -8,11 +8,11 @@ use crate::solver::{
     layout::simd::{LANES, Lane},
 };
 
-/// The least share of the places in braids that springs have to fill: one thread takes as long as eight. So a mesh that
+/// The least share of the places in strand packs that springs have to fill: one strand takes as long as eight. So a mesh that
 /// is small or has its threads crossing in one particle is left to springs in colours.
 const LEAST_FILLED: f32 = 0.4;
 
-/// Braids of all `threads` between `count` particles, and whether each of `springs` is in one. None at all where they
+/// Strand packs of all `threads` between `count` particles, and whether each of `springs` is in one. None at all where they
 /// wouldn't be filled.
 ///
 /// Threads get colours as springs do, in their order, and those of one colour are sorted by length. Rings are only beside
@@ -60,7 +60,7 @@ struct Plait<'a> {
     springs: &'a [(SpringKind, Spring)],
     /// Numbers of the bending springs by their ends, the lower first.
     bends: HashMap<(u32, u32), usize>,
-    /// Whether each spring is in a braid.
+    /// Whether each spring is in a strand pack.
     woven: Vec<bool>,
 }
 
@@ -106,7 +106,7 @@ impl<'a> Plait<'a> {
         braid
     }
 
-    /// Takes a spring into a braid, and gives its rest length, m.
+    /// Takes a spring into a strand pack, and gives its rest length, m.
     fn weave(&mut self, spring: usize) -> f32 {
         let rest = self.springs[spring].1.rest;
         self.woven[spring] = rest > 0.0;

@@ -10,7 +10,7 @@
 
 use super::Fabric;
 
-/// A fabric to begin with, and what of it has been measured.
+/// A fabric to begin with, and which of its constants have been measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FabricPreset {
     /// Name of its file in the repository's `assets/fabrics`, without `.fabric.ron`.
@@ -24,7 +24,7 @@ pub struct FabricPreset {
 }
 
 impl FabricPreset {
-    /// What of it was measured, and by whom, in a few sentences.
+    /// Which constants were measured, and by whom, in a few sentences.
     pub fn about(&self) -> String {
         let fields: Vec<String> = self.measured.iter().map(|field| field.replace('_', " ")).collect();
         let measured = match fields.split_last() {

@@ -20,7 +20,7 @@ pub(super) struct Knob {
     /// The ends of the slider: the sensible range.
     range: (f32, f32),
     scale: Scale,
-    /// The least and the most that can be entered: what the solver accepts and can still work with.
+    /// Smallest and largest value that can be entered: what the solver accepts and can still work with.
     limits: (f32, f32),
 }
 

@@ -51,7 +51,7 @@ pub enum Method {
     Explicit,
 }
 
-/// What of a cloth meets itself and other cloths.
+/// How a cloth collides with itself and with other cloths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Reflect)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum SelfCollision {
@@ -95,23 +95,23 @@ pub struct StepContext<'a> {
     pub gravity: Vec3A,
     /// Fixed particles and their way.
     pub pin_motions: &'a [PinMotion],
-    /// Bodies that anchors are fixed to and that give way. On these there are no tethers.
+    /// Bodies that pins are fixed to and that give way. On these there are no tethers.
     pub body_attachments: &'a [BodyAttachment],
-    /// Which anchors are fixed to which of them.
+    /// Which pins are fixed to which of them.
     pub attached_pins: &'a [AttachedPin],
     /// Hands that pull at the cloth.
     pub grabs: &'a [Grab],
-    /// The most that a particle may be faster than what holds the cloth, m/s.
+    /// Largest speed of a particle relative to what holds the cloth, m/s.
     pub max_velocity: f32,
     /// Longest allowed distances to fixed particles. Not for [`Method::Explicit`].
     pub tethers: Option<&'a Tethers>,
-    /// By how much of its length a tether gives, no unit, beyond what a sheet itself gives. 0.002 to 0.01.
+    /// Share of its length by which a tether may be longer, no unit, beyond what its fabric is stretched by. 0.002 to 0.01.
     pub tether_slack: f32,
     /// Distance that particles keep from obstacles beyond the cloth's thickness, m.
     pub margin: f32,
-    /// The most that a particle leaves an obstacle by, or another part of cloth, that it is inside of, m/s.
+    /// Largest speed at which a particle is pushed out of an obstacle, or of cloth, that it is inside of, m/s.
     pub max_depenetration_velocity: f32,
-    /// What of the cloth meets itself and other cloths.
+    /// How the cloth collides with itself and with other cloths.
     pub self_collision: SelfCollision,
     /// Layers that it is in for other cloths, one a bit.
     pub collision_layers: u32,
@@ -132,7 +132,7 @@ pub struct StepContext<'a> {
 }
 
 impl StepContext<'_> {
-    /// By how much of its length a tether gives in all, no unit: a sheet may be stretched by its weight.
+    /// Share of its length by which a tether may be longer in all, no unit: fabric may be stretched by its weight.
     pub fn slack(&self) -> f32 {
         let longest = self.tethers.map_or(0.0, Tethers::longest);
         self.tether_slack + longest * self.material.give(self.gravity.length())

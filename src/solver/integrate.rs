@@ -23,7 +23,7 @@ pub(crate) struct Motion<'a> {
     pub decay: f32,
     /// Duration of the substep, s.
     pub h: f32,
-    /// The most that particles may be fast, where nothing comes after that sees to it.
+    /// The speed limit, where no later stage keeps it.
     pub limit: Option<SpeedLimit>,
 }
 
@@ -74,12 +74,12 @@ impl Motion<'_> {
     }
 }
 
-/// The most that particles may be faster than what holds the cloth.
+/// Limits the speed of particles relative to what holds the cloth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpeedLimit {
     /// Mean velocity of what holds the cloth, m/s.
     pub around: Vec3A,
-    /// The most that a particle may differ from it, m/s.
+    /// Largest speed relative to that, m/s.
     pub most: f32,
 }
 

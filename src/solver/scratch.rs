@@ -46,7 +46,7 @@ pub struct Scratch {
     pub(crate) bend_factors: BendFactors,
     /// The pins that hold tethers.
     pub(crate) pins: PinPlaces,
-    /// Bodies that anchors are fixed to.
+    /// Bodies that pins are fixed to.
     pub(crate) body_attachments: BodyAttachments,
     /// What this thread needs of its own.
     pub(crate) worker_scratch: WorkerScratch,

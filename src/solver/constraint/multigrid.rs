@@ -4,9 +4,9 @@
 //!   o---.---.---.---o---.---.---.---o      o nodes     . particles between them
 //! ```
 //!
-//! A strand takes a pull along one thread within a substep, not around a corner. On a lattice of few nodes a few
+//! A strand takes a pull along itself within a substep, not around a corner. On a lattice of few nodes a few
 //! iterations take it everywhere. Each level, the coarsest first, starts from where its nodes are by now, pulls at
-//! threads that are longer than the cloth is (slack ones fold between the nodes: they are left alone), and hands its
+//! strands that are longer than the cloth is (slack ones fold between the nodes: they are left alone), and hands its
 //! nodes' ways on to the next, at last to all particles, interpolated. Like tethers, levels hold cloth within its own
 //! length and a slack, however soft its springs are: where there are no tethers, there are no levels.
 //!

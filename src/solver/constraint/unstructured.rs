@@ -1,4 +1,4 @@
-//! What joins particles wherever they are in the order: one way to the beads and back for all of it.
+//! What joins particles wherever they are in the order: gathered once, and put back once, for all of it.
 
 use crate::solver::{
     constraint::{
@@ -18,7 +18,7 @@ pub(crate) mod bend;
 pub(crate) mod face;
 pub mod spring;
 
-/// Springs are few where there are so many particles for each: going to the beads and back would take longer.
+/// Springs are few where there are so many particles for each: gathering them and putting them back would take longer.
 const FEW: usize = 4;
 
 /// What is to be solved in a substep.
@@ -31,12 +31,12 @@ pub(crate) struct UnstructuredPass<'a> {
     pub woven: bool,
     /// How bends are solved, if there are any.
     pub bending: Option<BendSolver>,
-    /// The braids, where they are solved as such.
+    /// The strand packs, where they are solved as such.
     pub strand_pack_solver: Option<StrandPackSolver<'a>>,
 }
 
 impl UnstructuredPass<'_> {
-    /// Solves bends, faces and springs once, batch after batch, and then the braids. What comes last is held best: stretch
+    /// Solves bends, faces and springs once, batch after batch, and then the strand packs. What comes last is held best: stretch
     /// shows more than bending.
     pub fn solve(
         self,

@@ -1,4 +1,4 @@
-//! Which places are inside of a closed mesh, and what of it is nearest to them.
+//! Tells whether a place is inside of a closed mesh, and finds the nearest point of the mesh.
 
 use bevy::math::Vec3A;
 

@@ -37,7 +37,7 @@ impl Default for BodyDisplacement {
     }
 }
 
-/// A body that anchors are fixed to, on its way over one step.
+/// A body that pins are fixed to, on its way over one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyAttachment {
     /// What it takes to move it.
@@ -46,10 +46,10 @@ pub struct BodyAttachment {
     pub way: Vec3A,
 }
 
-/// An anchor that is fixed to a body.
+/// A pin that is fixed to a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AttachedPin {
-    /// Number of the anchor in [`crate::solver::input::StepContext::pin_motions`].
+    /// Number of the pin in [`crate::solver::input::StepContext::pin_motions`].
     pub anchor: u32,
     /// Number of the body in [`crate::solver::input::StepContext::body_attachments`].
     pub mount: u32,

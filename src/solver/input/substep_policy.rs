@@ -1,8 +1,8 @@
-//! How much work a cloth needs to be stretched no more than is wanted.
+//! Chooses substeps and levels, so that a cloth is stretched no more than is wanted.
 
 use crate::solver::topology::{Topology, level::LevelPass, structure::MeshStructure};
 
-/// Substeps and levels of a step.
+/// How many substeps a step takes, and how many iterations of the coarse levels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SubstepPolicy {
     /// Substeps, and the fewest whatever is at stake.
@@ -20,7 +20,7 @@ pub struct SubstepPolicy {
     pub follows_time_step: bool,
 }
 
-/// How much is at stake in a step.
+/// What contact puts at risk in a step: the riskier, the more substeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ContactRisk {
     None,
@@ -52,7 +52,7 @@ impl SubstepPolicy {
     const MORE_WITH_SHARP: f32 = 3.0;
 
     /// What a cloth of 64 x 64 particles, 1 m wide and hung by two corners, is stretched while it swings in one substep
-    /// of 1/60 s, no unit. It grows with this power of the particles along a side; without rows and columns, on threads
+    /// of 1/60 s, no unit. It grows with this power of the particles along a side; without rows and columns, on strands
     /// only, with the one below.
     const STRAIN_OF_ONE: f32 = 0.1;
     const GROWTH: f32 = 1.2;
@@ -61,7 +61,7 @@ impl SubstepPolicy {
     /// The same with levels.
     const STRAIN_WITH_LEVELS: f32 = 0.03;
 
-    /// The same with levels and without threads, for all but one in a hundred springs.
+    /// The same with levels and without strands, for all but one in a hundred springs.
     const LOOSE_STRAIN: f32 = 0.04;
 
     /// With fewer, triangles that are solved one after the other feed energy into a cloth that is pulled in its plane. Flags of
@@ -83,7 +83,7 @@ impl SubstepPolicy {
     ///
     /// Measured with `lab hang` over grids of 16 to 256 particles a side: strain falls with the number of substeps, and
     /// grows with the power 1.2 of the particles along a side, with levels 0.9. Levels never let a hung cloth come quite
-    /// to rest, so they are used where substeps alone would be too many, and on meshes without threads. A cloth that is
+    /// to rest, so they are used where substeps alone would be too many, and on meshes without strands. A cloth that is
     /// stretched more by its own weight stays so. On triangles a few springs are stretched several times as much: those
     /// next to a pin carry its whole load.
     pub fn to_hold(max_strain: f32, topology: &Topology) -> Self {

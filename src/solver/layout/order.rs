@@ -12,7 +12,7 @@ pub const BAND: usize = 64;
 /// In which block, and where in it, a particle stands: its slot.
 ///
 /// Particles in rows and columns stand in blocks of eight columns, and those one below the other: a column of blocks is
-/// eight threads side by side. That is so within each band of rows, and band stands after band. Others stand in their own
+/// eight strands side by side. That is so within each band of rows, and band stands after band. Others stand in their own
 /// order, as if in one row. The last column of blocks is filled up with slots in which nobody stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Order {

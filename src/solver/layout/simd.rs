@@ -39,7 +39,7 @@ impl SimdLevel {
 
 /// Numbers side by side: the eight of a block, or the sixteen of two blocks at once.
 ///
-/// Sixteen pay where each number waits for the one before, as along a thread: the units that divide would be idle.
+/// Sixteen pay where each number waits for the one before, as along a strand: the units that divide would be idle.
 pub(crate) trait Wide<S: Simd>: SimdFloat<S, Element = f32> {
     /// Takes over the lanes at `at`, and of two blocks also those `stride` further on.
     fn load(simd: S, lanes: &[Lane], at: usize, stride: usize) -> Self;

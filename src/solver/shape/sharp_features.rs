@@ -89,7 +89,7 @@ pub enum Sharpness {
 }
 
 impl FeatureTolerance {
-    /// What of a solid comes between particles.
+    /// How sharp a solid is.
     pub fn pierced_by(self, solid: &Solid) -> Option<Sharpness> {
         // The sine of half a right angle is that by which edges fall off to both sides.
         let is_caught = core::f32::consts::FRAC_1_SQRT_2 * self.edge / 2.0 > self.sink;

@@ -1,4 +1,4 @@
-//! Particles in rows and columns, and the threads that they are on.
+//! Particles in rows and columns, and the strands that they are on.
 
 use core::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::solver::{
 
 /// Particles that form a rectangle: the one in row r and column c is number r · columns + c.
 ///
-/// Rest lengths stand as the solver reads them: for eight threads side by side, node after node. Zero where there is no
+/// Rest lengths stand as the solver reads them: for eight strands side by side, node after node. Zero where there is no
 /// spring.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lattice {
@@ -56,18 +56,18 @@ pub struct RestCurvature {
 /// The springs along all rows or along all columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StrandSet {
-    /// Nodes that each thread has room for: those of rows go on to the end of the last block.
+    /// Nodes that each strand has room for: those of rows go on to the end of the last block.
     pub nodes: usize,
-    /// Nodes of each thread.
+    /// Nodes of each strand.
     pub count: usize,
-    /// Whether the last node of a thread is joined to the first: threads are rings.
+    /// Whether the last node of a strand is joined to the first: strands are rings.
     pub closed: bool,
-    /// Rest lengths from a node to the next, m: for each eight threads, one entry a node. That from the last node of a ring
+    /// Rest lengths from a node to the next, m: for each eight strands, one entry a node. That from the last node of a ring
     /// is the length to its first.
     pub stretch: Vec<Lane>,
     /// Rest lengths from a node to the one after the next, m.
     pub bend: Vec<Lane>,
-    /// Which threads of a sheet they are.
+    /// Which strands of a sheet they are.
     pub grain: Grain,
     /// Parts of C and of -G that each spring from a node to the next has of a sheet, over its rest length, 1/m.
     pub shares: Vec<[Lane; 2]>,
@@ -80,9 +80,9 @@ pub struct StrandSet {
 pub struct Link {
     /// Rest length, m; zero for none.
     pub rest: f32,
-    /// Parts of C and -G along a thread, and that of G in a cell, no unit.
+    /// Parts of C and -G along a strand, and that of G in a cell, no unit.
     pub shares: [f32; 2],
-    /// Weights of the bend in the middle of the way from two steps along a thread, or of the cell's twist, no unit.
+    /// Weights of the bend in the middle of the way from two steps along a strand, or of the cell's twist, no unit.
     pub weights: [f32; 2],
 }
 
@@ -162,7 +162,7 @@ impl Lattice {
         }
     }
 
-    /// The same with threads of these lengths (m) and nothing else.
+    /// The same with strands of these lengths (m) and nothing else.
     pub fn of_lengths(
         rows: usize,
         columns: usize,
@@ -196,7 +196,7 @@ impl Link {
 }
 
 impl StrandSet {
-    /// Rest lengths of the eight threads with number `pack`.
+    /// Rest lengths of the eight strands with number `pack`.
     #[inline(always)]
     pub(crate) fn stretch(&self, pack: usize) -> &[Lane] {
         &self.stretch[pack * self.nodes..][..self.count]

@@ -15,7 +15,7 @@ use crate::solver::{
 pub struct Level {
     /// About how many particles it is from one node to the next.
     pub stride: u32,
-    /// The nodes and the threads between them.
+    /// The nodes and the strands between them.
     pub lattice: Lattice,
     /// Coordinate of each row of nodes, rising.
     pub rows: Vec<f32>,

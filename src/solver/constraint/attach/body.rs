@@ -1,14 +1,14 @@
-//! Anchors on bodies that give way: what pulls at them moves the body.
+//! Pins on bodies that give way: what pulls at them moves the body.
 //!
 //! ```text
-//!   anchor o~~~~~ cloth
-//!       r /                K = 1/M - [r] I^-1 [r]     how far a push at the anchor moves the body there
+//!      pin o~~~~~ cloth
+//!       r /                K = 1/M - [r] I^-1 [r]     how far a push at the pin moves the body there
 //!        x centre of mass
 //! ```
 //!
-//! The cloth's own mass at the anchors is part of the body. In a substep each of its n anchors is a particle with a part of its
+//! The cloth's own mass at the pins is part of the body. In a substep each of its n pins is a particle with a part of its
 //! mass, `1 / (n |K|)`. What it then comes off its place by is momentum that the body gets, and it is put where the body has
-//! it by now. However light the body is, it never goes farther than its anchors did (Tonge, Benevolenski and Voroshilov,
+//! it by now. However light the body is, it never goes farther than its pins did (Tonge, Benevolenski and Voroshilov,
 //! "Mass Splitting for Jitter-Free Parallel Rigid Body Simulation", 2012), and what the cloth loses, it gains.
 
 use core::ops::Range;
@@ -25,7 +25,7 @@ use crate::solver::{
 
 pub(crate) mod combined;
 
-/// Bodies that have come off their way within a step, and the anchors on them.
+/// Bodies that have come off their way within a step, and the pins on them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BodyAttachments {
     bodies: Vec<AttachedBody>,
@@ -51,7 +51,7 @@ struct AttachedBody {
     spin: Vec3A,
 }
 
-/// An anchor on a body.
+/// A pin on a body.
 #[derive(Clone, Copy, Debug)]
 struct PinOnBody {
     slot: usize,
@@ -87,7 +87,7 @@ impl AttachedBody {
         self.angular += (arm - self.turn * self.load.offset).cross(momentum);
     }
 
-    /// Works out the velocities from what has been taken, none of an anchor's more than `most` (m/s): a body whose engine
+    /// Works out the velocities from what has been taken, none of a pin's more than `most` (m/s): a body whose engine
     /// knows nothing of a load a thousand times its own is thrown about by it. Returns by how much they have changed.
     fn gain(&mut self, most: f32) -> [Vec3A; 2] {
         let before = [self.velocity, self.spin];
@@ -122,7 +122,7 @@ impl AttachedBody {
 }
 
 impl BodyAttachments {
-    /// Begins a step. From now on anchors on bodies can be moved, until they [`rest`](Self::rest).
+    /// Begins a step. From now on pins on bodies can be moved, until they [`rest`](Self::rest).
     pub fn begin(&mut self, lanes: &mut Lanes, topology: &Topology, ctx: &StepContext) {
         let Self { bodies, pin_motions, pulls } = self;
         pulls.clear();
@@ -153,7 +153,7 @@ impl BodyAttachments {
             let load = &bodies[held.mount].load;
             held.mass = 1.0 / (load.pin_motions * load.give(held.arm));
         }
-        // What nothing moves is fixed as any other anchor is.
+        // What nothing moves is fixed as any other pin is.
         pin_motions.retain(|held| held.mass.is_finite());
         self.loosen(lanes);
     }
@@ -164,7 +164,7 @@ impl BodyAttachments {
         }
     }
 
-    /// To all that comes now, anchors on bodies are fixed.
+    /// To all that comes now, pins on bodies are fixed.
     pub fn rest(&self, lanes: &mut Lanes) {
         for held in &self.pin_motions {
             lanes.set_inverse_mass(held.slot, 0.0);
@@ -172,7 +172,7 @@ impl BodyAttachments {
     }
 
     /// Brings the bodies to the end of the part `span` (0..=1) of a step of `dt` seconds, with the cloth's own mass at their
-    /// anchors and the `force` (N) there, and the anchors to where they then are.
+    /// pins and the `force` (N) there, and the pins to where they then are.
     pub fn advance(&mut self, lanes: &mut Lanes, ctx: &StepContext, span: Range<f32>, dt: f32, force: Option<&Points>) {
         let h = (span.end - span.start) * dt;
         for held in &self.pin_motions {
@@ -198,7 +198,7 @@ impl BodyAttachments {
         self.loosen(lanes);
     }
 
-    /// Gives the bodies what has pulled at their anchors for `h` seconds, puts these where the bodies have them, and has
+    /// Gives the bodies what has pulled at their pins for `h` seconds, puts these where the bodies have them, and has
     /// them rest.
     pub fn settle(&mut self, lanes: &mut Lanes, ctx: &StepContext, h: f32) {
         let Self { bodies, pin_motions, pulls } = self;

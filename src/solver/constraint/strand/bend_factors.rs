@@ -16,7 +16,7 @@ use crate::solver::{
     topology::lattice::{Lattice, RestCurvature, StrandSet},
 };
 
-/// As threads are solved: for eight side by side, node after node.
+/// As strands are solved: for eight side by side, node after node.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BendFactors {
     /// The matrix of the rows' bends, in factors.
@@ -154,7 +154,7 @@ impl Places<'_> {
     }
 }
 
-/// Works out what the bends of a lattice have in common in all substeps. Only the threads of a sheet have any.
+/// Works out what the bends of a lattice have in common in all substeps. Only the strands of a sheet have any.
 pub(crate) fn prepare(
     bend_factors: &mut BendFactors,
     lattice: &Lattice,

@@ -19,7 +19,7 @@ pub fn solve(mut rows: Vec<Vec<f64>>, mut right: Vec<DVec3>) -> Vec<DVec3> {
     (0..count).map(|i| right[i] / rows[i][i]).collect()
 }
 
-/// A thread, as [`strand`](crate::solver::constraint::strand::strand) has it.
+/// A strand, as [`tridiagonal`](crate::solver::constraint::strand::tridiagonal) has it.
 #[derive(Clone, Debug, Default)]
 pub struct Strand {
     /// Where its nodes are, and where they were before the substep, m.

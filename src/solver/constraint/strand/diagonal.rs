@@ -8,7 +8,7 @@
 //!   o       o       o       next row
 //! ```
 //!
-//! Those between two rows have no particle in common with those between the next two but one. They aren't threads: each
+//! Those between two rows have no particle in common with those between the next two but one. They aren't strands: each
 //! is solved for itself.
 //!
 //! The cells of a sheet also resist being twisted: with the energy B/2 |T|² of T = t (x00 + x11 - x01 - x10), as

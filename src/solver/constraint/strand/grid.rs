@@ -1,4 +1,4 @@
-//! The threads of a lattice: rows and columns as strands.
+//! The rows and columns of a lattice as strands.
 //!
 //! Eight columns stand side by side in memory already. Eight rows are brought there by transposing their blocks, and
 //! back.
@@ -25,7 +25,7 @@ use crate::solver::{
     topology::lattice::{Lattice, StrandSet},
 };
 
-/// Buffers for threads that are being solved.
+/// Buffers for strands that are being solved.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StrandScratch {
     pub rows: EliminationRows,
@@ -58,7 +58,7 @@ pub(crate) fn masses_along_rows(inverse_mass: &[Lane], band: Band, along_rows: &
     });
 }
 
-/// Which threads are solved last: they are held best.
+/// Which strands are solved last: they are held best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StrandDirection {
     Rows,
@@ -74,7 +74,7 @@ impl StrandDirection {
         }
     }
 
-    /// The threads that carry the most: those that go from pin to pin where few pins are far apart, and those that hang
+    /// The strands that carry the most: those that go from pin to pin where few pins are far apart, and those that hang
     /// from them where pins stand close.
     pub fn between(pin_motions: &[PinMotion], order: Order) -> Self {
         let place =
@@ -89,7 +89,7 @@ impl StrandDirection {
     }
 }
 
-/// How the threads of a lattice are solved.
+/// How the strands of a lattice are solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GridStrandSolver<'a> {
     pub lattice: &'a Lattice,
@@ -140,7 +140,7 @@ impl GridStrandSolver<'_> {
         }
     }
 
-    /// Takes a band's part of up to two packs of columns from the `first` on to the loom.
+    /// Takes a band's part of up to two packs of columns from the `first` into the buffers.
     pub fn take_columns(&self, part: &GridView, band: Band, first: usize, strand_scratch: &mut StrandScratch) {
         let stride = self.lattice.rows;
         strand_scratch.make_room(2 * stride);
@@ -216,7 +216,7 @@ impl GridStrandSolver<'_> {
         }
     }
 
-    /// Solves one or two packs of threads.
+    /// Solves one or two packs of strands.
     fn solve_packs(&self, pack: &mut StrandLanes, run: StrandRun, rows: &mut EliminationRows) {
         let level = self.simd_level.level();
         match (pack.position.len() > pack.stride, self.strand_material.is_stretch_damped()) {
@@ -266,7 +266,7 @@ fn put_rows<S: Simd>(simd: S, taken: &[Block], nodes: usize, columns: &mut [Bloc
     }
 }
 
-/// One or two packs of threads that are being solved.
+/// One or two packs of strands that are being solved.
 #[derive(Clone, Copy)]
 struct StrandRun<'a> {
     threads: &'a StrandSet,

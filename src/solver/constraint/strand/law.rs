@@ -47,7 +47,7 @@ impl<S: Simd, F: Wide<S>> WideSpringLaw<S, F> for [F; 2] {
     }
 }
 
-/// What the threads of a sheet follow along one of its directions, in a substep of h seconds.
+/// What the strands of a sheet follow along one of its directions, in a substep of h seconds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DirectionModuli {
     /// C h², kg.
@@ -87,13 +87,13 @@ impl DirectionModuli {
         strain.simd_gt(F::splat(simd, 0.0)).select(taut, pressed)
     }
 
-    /// The same without what only threads do: stiffen, and give way where they are pressed together.
+    /// The same without what only strands do: stiffen, and give way where they are pressed together.
     pub fn linear(self) -> Self {
         Self { half_stiffening: 0.0, compression: 1.0, ..self }
     }
 }
 
-/// What some springs of a sheet's threads follow.
+/// What some springs of a sheet's strands follow.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShareLaw<F> {
     /// k h² over the rest length, kg/m.
@@ -161,7 +161,7 @@ impl GatherLaws for [DirectionModuli; 2] {
     }
 }
 
-/// The laws of threads side by side, spring after spring.
+/// The laws of strands side by side, spring after spring.
 pub(crate) trait StrandLaws<S: Simd, F: Wide<S>>: Copy {
     type WideSpringLaw: WideSpringLaw<S, F>;
 
@@ -214,7 +214,7 @@ impl<S: Simd, F: Wide<S>> StrandLaws<S, F> for TensionOnly {
     }
 }
 
-/// Threads of a sheet.
+/// Strands of a sheet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GridStrandLaws<'a> {
     /// Parts of C and of -G that each spring has, over its rest length, 1/m.
@@ -239,7 +239,7 @@ impl<S: Simd, F: Wide<S>> StrandLaws<S, F> for GridStrandLaws<'_> {
     }
 }
 
-/// Threads of a sheet that go along any direction.
+/// Strands of a sheet that go along any direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GatheredStrandLaws<'a> {
     /// Parts of Cu, Cv and -G that each spring has, over its rest length, 1/m.

@@ -1,4 +1,4 @@
-//! What threads are made of, scaled to a substep.
+//! What strands are made of, scaled to a substep.
 
 use crate::solver::{
     constraint::strand::law::{DirectionModuli, Scaled, TensionOnly},
@@ -6,7 +6,7 @@ use crate::solver::{
     topology::SpringKind,
 };
 
-/// What threads are made of.
+/// What strands are made of.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum StrandMaterial {
     /// Springs that are alike.
@@ -17,7 +17,7 @@ pub(crate) enum StrandMaterial {
     },
     /// Springs of a level, which only pull.
     SpringResponse(TensionOnly),
-    /// The threads of a sheet.
+    /// The strands of a sheet.
     GridView {
         /// By [`Grain::index`](crate::solver::topology::Grain::index).
         stretch: [DirectionModuli; 2],

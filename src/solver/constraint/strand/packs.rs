@@ -1,4 +1,4 @@
-//! Threads that lie anywhere on a mesh, as strands: gathered eight side by side, solved, and put back.
+//! Strands that lie anywhere on a mesh, as strands: gathered eight side by side, solved, and put back.
 
 use fearless_simd::{dispatch, f32x8, prelude::*};
 
@@ -14,7 +14,7 @@ use crate::solver::{
     topology::strand_pack::StrandPack,
 };
 
-/// The braids that are to be solved in a substep.
+/// The strand packs that are to be solved in a substep.
 pub(crate) struct StrandPackSolver<'a> {
     pub strand_packs: &'a [StrandPack],
     pub strand_material: StrandMaterial,

@@ -1,17 +1,17 @@
-//! Bending along threads, each thread solved exactly.
+//! Bending along strands, each strand solved exactly.
 //!
 //! ```text
 //!   x0 --- x1 --- x2 --- x3 --- ...       Dj = pj x(j-1) - (pj + qj) xj + qj x(j+1)
 //! ```
 //!
-//! A thread of a sheet resists bending with the energy B/2 |Dj - rj|² at each of its inner nodes, the weights p and q being
+//! A strand of a sheet resists bending with the energy B/2 |Dj - rj|² at each of its inner nodes, the weights p and q being
 //! such that Dj is the curvature times the root of the area that the node stands for, and rj its rest. It is linear in the
 //! positions: Bergou et al., "A Quadratic Bending Model for Inextensible Surfaces" (2006). In XPBD's form (see
 //! [`spring`](crate::solver::constraint::unstructured::spring)), with κ = B h² and a vector lambda for each node:
 //!
 //! (κ D W Dᵀ + 1) lambda = -κ (D x - r)
 //!
-//! Two bends of a thread have particles in common if they are no more than two nodes apart, so the matrix has five
+//! Two bends of a strand have particles in common if they are no more than two nodes apart, so the matrix has five
 //! diagonals, and Cholesky's L D Lᵀ solves it in one pass there and one back; L and D are the same in all substeps. Sweeping over the bends instead leaves a
 //! cloth too soft whose nodes move by more than they are apart: the more, the finer the mesh.
 
@@ -28,7 +28,7 @@ use crate::solver::{
     },
 };
 
-/// The bends of threads side by side.
+/// The bends of strands side by side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StrandBends<'a> {
     /// Weights p and q at each node, 1/m times m: zero where nothing bends, as at the ends.
@@ -45,7 +45,7 @@ pub(crate) struct StrandBends<'a> {
 /// to substep.
 pub(crate) type Factor = [Lane; 3];
 
-/// Takes the matrix of the bends of threads apart. They have `count` nodes with inverse masses, 1/kg.
+/// Takes the matrix of the bends of strands apart. They have `count` nodes with inverse masses, 1/kg.
 #[inline(always)]
 pub(crate) fn factorize<S: Simd>(
     simd: S,
@@ -80,7 +80,7 @@ pub(crate) fn factorize<S: Simd>(
 }
 
 impl StrandLanes<'_> {
-    /// Solves the bends of all inner nodes of one pack of threads with `count` nodes.
+    /// Solves the bends of all inner nodes of one pack of strands with `count` nodes.
     #[inline(always)]
     pub fn solve_curvature<S: Simd, const DAMPED: bool, const CURVED: bool>(
         &mut self,
@@ -186,7 +186,7 @@ mod tests {
         layout::simd::{LANES, SimdLevel},
     };
 
-    /// Threads side by side.
+    /// Strands side by side.
     struct Strands {
         position: Vec<Block>,
         previous: Vec<Block>,
@@ -196,7 +196,7 @@ mod tests {
     }
 
     impl Strands {
-        /// Threads of which some nodes are fixed, and some don't bend.
+        /// Strands of which some nodes are fixed, and some don't bend.
         fn new(count: usize, curved: bool, rng: &mut Rng) -> Self {
             let mut threads = Self {
                 position: vec![Block::default(); count],

@@ -13,7 +13,7 @@
 //! beside it. Solved one by one, diagonals are softer than they are by 1 + k h²/m or so: with the light particles of a fine
 //! mesh, several times as soft. Across the strands there is nothing of the kind: diagonals that cross are at right angles.
 //!
-//! As in threads, taut springs pull along the direction that they have after the move.
+//! As in strands, taut springs pull along the direction that they have after the move.
 
 use fearless_simd::{f32x8, prelude::*};
 

@@ -1,13 +1,13 @@
-//! Strands: threads of springs end to end, each solved exactly.
+//! Strands: chains of springs end to end, each solved exactly.
 //!
 //! ```text
 //!   x0 --- x1 --- x2 --- ... --- xn       Cj = |dj| - Lj,  dj = x(j+1) - xj
 //! ```
 //!
-//! Two springs of a thread have a particle in common if they are neighbours, and none else. The system that XPBD solves
-//! for all springs of a thread at once (see [`spring`](crate::solver::constraint::unstructured::spring), here for one iteration a substep) is therefore
-//! tridiagonal, and Thomas' algorithm solves it in one pass there and one back. A pull at one end is felt at the other
-//! within one substep: that is what sweeping over the springs takes hundreds of iterations for.
+//! Two springs of a strand have a particle in common if they are neighbours, and none else. The system that XPBD solves
+//! for all springs of a strand at once (see [`spring`](crate::solver::constraint::unstructured::spring), here for one
+//! iteration a substep) is therefore tridiagonal, and Thomas' algorithm solves it in one pass there and one back. A pull at
+//! one end is felt at the other within one substep: that is what sweeping over the springs takes hundreds of iterations for.
 //!
 //! Row j, multiplied by |dj| on both sides so that directions needn't be normalised and by t = k h² + c h so that neither
 //! a stiffness of zero nor an infinite one needs a special case, with mu = lambda / |d|, here without damping:
@@ -15,7 +15,7 @@
 //! -tj wj d(j-1)·dj mu(j-1) + |dj|² (tj (wj + w(j+1)) + 1) mu(j) - tj w(j+1) dj·d(j+1) mu(j+1) = tj |dj| (Lj - |dj|)
 //!
 //! But for the factors t, the matrix is Gram's of the directions plus a positive diagonal: elimination needs no pivoting,
-//! and leaves |dj|² of each diagonal entry at least. Of a stiff thread between two fixed particles it leaves little more,
+//! and leaves |dj|² of each diagonal entry at least. Of a stiff strand between two fixed particles it leaves little more,
 //! which is less than what rounding does to numbers 1 + 2 t w as large: where that would leave less, it is set right.
 //! Particle j moves by wj (d(j-1) mu(j-1) - dj mu(j)).
 //!
@@ -46,7 +46,7 @@ use crate::solver::{
     particles::gathered::End,
 };
 
-/// Eight threads side by side, node after node; or two times eight, those of the second pack after all of the first.
+/// Eight strands side by side, node after node; or two times eight, those of the second pack after all of the first.
 pub(crate) struct StrandLanes<'a> {
     /// Positions, m.
     pub position: &'a mut [Block],
@@ -81,7 +81,7 @@ impl EliminationRows {
     }
 }
 
-/// The springs of threads side by side from each node to the next.
+/// The springs of strands side by side from each node to the next.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StrandSprings<'a, L> {
     /// Rest lengths, m, one for each node; where it is zero, there is no spring.

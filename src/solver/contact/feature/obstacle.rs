@@ -103,7 +103,7 @@ impl ObstacleSearch {
         self.outlines.of(fixed.cloth as usize, fixed.obstacle as usize)
     }
 
-    /// Adds what of a cloth and obstacle `i` of it may meet.
+    /// Adds the pairs of features of a cloth and of obstacle `i` of it that may touch.
     pub fn search(
         &mut self,
         at: &ClothMotion<impl ClothInStep>,

@@ -21,7 +21,7 @@ pub(crate) struct ObstacleSweep {
     pub distance: f32,
     /// Coulomb friction, no unit.
     pub friction: f32,
-    /// The most that a particle leaves it by that was inside before, m.
+    /// Largest depenetration of a particle that was inside before, m.
     pub parting: f32,
 }
 
@@ -107,12 +107,12 @@ impl ObstacleSweep {
     }
 }
 
-/// The most that places go between two poses, m, which are as far as `far` from the origin.
+/// Upper bound of how far a place within `far` (m) of the origin goes between two poses, m.
 pub(crate) fn way_between(from: &Isometry3d, to: &Isometry3d, far: f32) -> f32 {
     from.translation.distance(to.translation) + turn_between(from.rotation, to.rotation, far)
 }
 
-/// The most that places go between two rotations, m, which are as far as `far` (m) from the origin.
+/// Upper bound of how far a place within `far` (m) of the origin goes between two rotations, m.
 pub(crate) fn turn_between(from: Quat, to: Quat, far: f32) -> f32 {
     // |q1 - q0| is 2 sin(angle / 4), on the shorter of the two ways around; a place goes by 2 sin(angle / 2) of its
     // distance, which is no more than twice that.

@@ -4,10 +4,10 @@ use bevy::math::{Mat3A, Vec3A};
 
 use crate::solver::input::Body;
 
-/// A body with the cloth's own mass at its anchors.
+/// A body with the cloth's own mass at its pins.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CombinedBody {
-    /// Number of anchors, and how far the farthest is from the body's centre of mass, m.
+    /// Number of pins, and how far the farthest is from the body's centre of mass, m.
     pub pin_motions: f32,
     pub reach: f32,
     /// Inverse mass of all, 1/kg.

@@ -1,4 +1,4 @@
-//! Threads against their whole matrix.
+//! Strands against their whole matrix.
 
 use bevy::math::{DVec3, Vec3A};
 use fastrand::Rng;
@@ -11,7 +11,7 @@ use crate::solver::{
     layout::simd::{LANES, SimdLevel},
 };
 
-/// Threads side by side, in two packs.
+/// Strands side by side, in two packs.
 struct Strands {
     count: usize,
     position: Vec<Block>,
@@ -21,7 +21,7 @@ struct Strands {
 }
 
 impl Strands {
-    /// Threads with steps of about a metre, of which some nodes are fixed and some springs missing, unless they are to be
+    /// Strands with steps of about a metre, of which some nodes are fixed and some springs missing, unless they are to be
     /// `taut`.
     fn new(count: usize, taut: bool, rng: &mut Rng) -> Self {
         let all = 2 * count;

@@ -60,7 +60,7 @@ impl Stages {
     }
 }
 
-/// Buffers for stages, for each particle four numbers as in the beads.
+/// Buffers for stages, for each particle four numbers as of the gathered particles.
 #[derive(Clone, Debug, Default)]
 pub struct ChebyshevBuffers {
     /// Where it was before the first stage, m.
