@@ -1,6 +1,6 @@
 //! What pulls and pushes harder than anything in a game leaves cloth whole: it isn't put back and comes to rest again.
 
-use bevy::prelude::*;
+use bevy::{asset::RenderAssetUsages, mesh::PrimitiveTopology, prelude::*};
 use bevy_drape::prelude::*;
 
 use crate::common::*;
@@ -97,45 +97,48 @@ fn damped_bends_of_a_cloth_that_is_torn_apart_by_its_pins_throw_nothing() {
 }
 
 #[test]
-fn a_stiff_strip_between_pins_that_leap_apart_comes_after_them() {
-    for columns in [3, 4] {
-        let mut app = headless();
-        let cloth = Cloth { substeps: Some(1), tether_slack: None, gravity_scale: 0.0, ..default() };
-        let fabric = Fabric {
-            density: 0.25,
-            warp_stiffness: 11_700.0,
-            weft_stiffness: 13_700.0,
-            weft_stiffening: 22.0,
-            warp_stiffening: 22.0,
-            compression: 0.03,
-            bending_rigidity: 0.0,
-            ..default()
-        };
-        let right = app.world_mut().spawn(Transform::default()).id();
-        let (last, bottom) = (columns - 1, 29 * columns);
-        let pins = Pins::indices([0, bottom]).and(Pins::indices([last, bottom + last]).to_entity(right));
-        spawn_cloth(&mut app, ClothGrid::new(0.016, 0.24, columns, 30), (cloth, fabric, pins));
-        run(&mut app, 5);
-        for frame in 0..120 {
-            let way = [0.0, 3.0, 0.01, 30.0, -2.0, 0.3][frame / 2 % 6];
-            get_mut::<Transform>(&mut app, right).translation = Vec3::new(way, 0.1 * way, 0.02 * way);
-            run(&mut app, 1);
-        }
-        assert_eq!(put_back(&app), 0, "{columns} columns");
+fn a_strip_that_a_pin_pulls_out_to_hundreds_of_metres_comes_after_it() {
+    let mut app = headless();
+    let post = app.world_mut().spawn(Transform::default()).id();
+    let fabric = Fabric {
+        density: 1.0,
+        warp_stiffness: 47.0,
+        weft_stiffness: 960.0,
+        warp_stiffening: 17.0,
+        weft_stiffening: 17.0,
+        shear_stiffness: 40.0,
+        ..default()
+    };
+    // The middle of its first row is between two pins.
+    let pins = Pins::edge(ClothEdge::Left).and(Pins::indices([2]).to_entity(post));
+    spawn_cloth(&mut app, ClothGrid::new(0.015, 0.15, 3, 17), (fabric, pins));
+    run(&mut app, 5);
+    for way in [Vec3::new(400.0, 590.0, -190.0), Vec3::ZERO, Vec3::new(-700.0, 3.0, 1.0), Vec3::ZERO] {
+        get_mut::<Transform>(&mut app, post).translation = way;
+        run(&mut app, 20);
     }
+    assert_eq!(put_back(&app), 0);
+}
+
+/// Triangles in a row, 0.3 m long.
+fn triangle_strip(count: u32) -> Mesh {
+    let step = 0.3 / count as f32;
+    let places: Vec<[f32; 3]> = (0..count).map(|i| [(i % 2) as f32 * 2.0 * step, i as f32 * -step, 0.0]).collect();
+    Mesh::new(PrimitiveTopology::TriangleStrip, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, places)
 }
 
 #[test]
 fn a_cloth_that_is_scaled_up_bends_as_calmly_as_before() {
     let mut app = headless();
-    let cloth = Cloth { substeps: Some(1), ..default() };
-    let fabric = Fabric { density: 0.05, bending_rigidity: 1e-4, bend_damping: 0.0, ..default() };
-    let cloth = spawn_cloth(&mut app, Circle::new(0.3).mesh().resolution(24), (cloth, fabric, Pins::indices([0, 1])));
+    let cloth = Cloth { substeps: Some(1), gravity_scale: 0.1, ..default() };
+    let fabric = Fabric { density: 0.128, bending_rigidity: 1e-5, bend_damping: 0.0, ..default() };
+    let cloth = spawn_cloth(&mut app, triangle_strip(78), (cloth, fabric, Pins::none()));
     run(&mut app, 5);
     get_mut::<Transform>(&mut app, cloth).scale = Vec3::splat(2.2);
     run(&mut app, 120);
     assert_eq!(put_back(&app), 0);
-    assert!(farthest(&app, cloth) < 5.0, "{} m", farthest(&app, cloth));
+    assert!(fastest(&app, cloth) < 5.0, "{} m/s", fastest(&app, cloth));
 }
 
 #[test]
