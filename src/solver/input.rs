@@ -81,7 +81,7 @@ impl SelfCollision {
 /// Settings and surroundings of one step.
 #[derive(Clone, Debug)]
 pub struct StepContext<'a> {
-    /// Duration of the step, s. More than [`MAX_TIME_STEP`](MAX_TIME_STEP) is cut down to it.
+    /// Duration of the step, s. More than [`MAX_TIME_STEP`] is cut down to it.
     pub dt: f32,
     /// How the springs are integrated.
     pub method: Method,
