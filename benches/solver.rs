@@ -3,13 +3,13 @@
 //! `cargo bench --bench solver`; the lab example measures whole scenes.
 
 use bevy::{math::Mat3A, math::Vec3A, prelude::Mesh};
-use bevy_drape::solver::{
-    Elasticity, Material, Method, Particles, PinMotion, Scratch, SelfCollision, StepContext, SubstepPolicy, Topology,
-    step,
-};
 use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothSprings, Fabric},
+    solver::{
+        Elasticity, Material, Method, Particles, PinMotion, Scratch, SelfCollision, StepContext, SubstepPolicy,
+        Topology, step,
+    },
 };
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 

@@ -1,8 +1,8 @@
 //! The simulation of one cloth: plain data in, plain data out, no ECS.
 //!
 //! Everything here is in SI units and relative to one origin per cloth, so `f32` keeps its precision however far the
-//! cloth is from the world's origin. [`step()`] is the whole of it; the other modules are what it is made of, in the
-//! order in which a step uses them.
+//! cloth is from the world's origin. [`step()`] is the whole of it; `docs/architecture.md` has the
+//! other modules in the order in which a step uses them.
 
 pub mod constraint;
 pub mod contact;

@@ -6,8 +6,10 @@ use bevy::{
     math::{Vec3A, ops},
     prelude::*,
 };
-use bevy_drape::build;
-use bevy_drape::solver::{SelfCollision, Topology};
+use bevy_drape::{
+    build,
+    solver::{SelfCollision, Topology},
+};
 
 use super::{
     mesh::{self, MeshSource, Top},

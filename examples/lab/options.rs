@@ -2,8 +2,10 @@
 
 use std::{io, path::PathBuf, str::FromStr};
 
-use bevy_drape::prelude::{ClothError, Fabric};
-use bevy_drape::solver::{Elasticity, LevelPass, Material, Method, SelfCollision, SpringConstants, SpringKind};
+use bevy_drape::{
+    prelude::{ClothError, Fabric},
+    solver::{Elasticity, LevelPass, Material, Method, SelfCollision, SpringConstants, SpringKind},
+};
 use clap::{Args, ValueEnum};
 
 use super::scene::{DENSITY, STIFFNESS, Settings};

@@ -27,7 +27,7 @@ pub(crate) fn seed(particles: &mut Particles, topology: &Topology, ctx: &StepCon
 
 /// Whether a pin or a hand goes farther across an axis, in this step, than its particle's part of the cloth is wide.
 fn is_jerked_across(axis: Vec3A, topology: &Topology, ctx: &StepContext) -> bool {
-    let pins = ctx.pin_motions.iter().map(|anchor| (anchor.particle, anchor.end - anchor.start));
+    let pins = ctx.pin_motions.iter().map(|pin| (pin.particle, pin.end - pin.start));
     let hands = ctx.grabs.iter().map(|grab| (grab.particles[0], grab.end - grab.start));
     pins.chain(hands)
         .any(|(particle, way)| way.reject_from_normalized(axis).length_squared() > topology.areas[particle as usize])

@@ -1,8 +1,7 @@
 //! Contact that can't be kept, or that changes while it is there: nothing is thrown and nothing gets lost.
 
 use bevy::{math::primitives::InfinitePlane3d, prelude::*};
-use bevy_drape::prelude::*;
-use bevy_drape::solver::measure;
+use bevy_drape::{prelude::*, solver::measure};
 
 use crate::{common::*, quiet::Quiet};
 

@@ -1,8 +1,7 @@
 //! Settings out of their range: refused at first, and ignored while the cloth runs.
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
-use bevy_drape::solver::LevelPass;
+use bevy_drape::{prelude::*, solver::LevelPass};
 
 use crate::common::*;
 

@@ -7,8 +7,7 @@ use bevy::{
     gizmos::{GizmoHandles, GizmoPlugin},
     prelude::*,
 };
-use bevy_drape::solver::SpringKind;
-use bevy_drape::{debug::*, prelude::*};
+use bevy_drape::{debug::*, prelude::*, solver::SpringKind};
 
 use crate::common::*;
 

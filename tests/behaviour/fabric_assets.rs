@@ -16,8 +16,7 @@ use bevy::{
     prelude::*,
     time::TimeUpdateStrategy,
 };
-use bevy_drape::prelude::*;
-use bevy_drape::solver::Moduli;
+use bevy_drape::{prelude::*, solver::Moduli};
 use proptest::prelude::*;
 
 use crate::common::*;

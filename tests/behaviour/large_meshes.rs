@@ -3,10 +3,10 @@
 use std::{sync::Arc, thread, time::Duration};
 
 use bevy::{math::Mat3A, prelude::*};
-use bevy_drape::solver::Topology;
 use bevy_drape::{
     build::{tethers, topology_of},
     prelude::*,
+    solver::Topology,
 };
 
 use crate::common::*;

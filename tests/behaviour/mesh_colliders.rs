@@ -10,8 +10,11 @@ use bevy::{
     math::{Isometry3d, Vec3A},
     prelude::*,
 };
-use bevy_drape::solver::{Obstacle, Shape, TriangleMesh};
-use bevy_drape::{Obstacles, prelude::*};
+use bevy_drape::{
+    Obstacles,
+    prelude::*,
+    solver::{Obstacle, Shape, TriangleMesh},
+};
 
 use crate::common::*;
 

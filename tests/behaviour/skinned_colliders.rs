@@ -10,8 +10,7 @@ use bevy::{
     },
     prelude::*,
 };
-use bevy_drape::solver::Shape;
-use bevy_drape::{Obstacles, prelude::*};
+use bevy_drape::{Obstacles, prelude::*, solver::Shape};
 
 use crate::{
     common::*,

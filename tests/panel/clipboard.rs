@@ -1,8 +1,7 @@
 //! What is put on the clipboard.
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
-use bevy_drape::solver::LevelPass;
+use bevy_drape::{prelude::*, solver::LevelPass};
 use bevy_egui::egui::accesskit::Role;
 
 use crate::common::*;

@@ -1,8 +1,7 @@
 //! Edits change what was edited, in the next step, and nothing else.
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
-use bevy_drape::solver::LevelPass;
+use bevy_drape::{prelude::*, solver::LevelPass};
 use bevy_egui::egui::accesskit::Role;
 
 use crate::common::*;

@@ -4,8 +4,10 @@ use bevy::{
     math::{DVec3, Isometry3d, Vec3A},
     prelude::*,
 };
-use bevy_drape::prelude::{ClothGrid, ClothSprings};
-use bevy_drape::solver::{Ellipsoid, Gusts, Material, WindRegion, WindSource};
+use bevy_drape::{
+    prelude::{ClothGrid, ClothSprings},
+    solver::{Ellipsoid, Gusts, Material, WindRegion, WindSource},
+};
 
 use crate::bench_bed::{Bed, GRAVITY, bits, springs_in_air};
 

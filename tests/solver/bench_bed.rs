@@ -7,13 +7,13 @@ use bevy::{
     prelude::Mesh,
     tasks::TaskPool,
 };
-use bevy_drape::solver::{
-    AttachedPin, BodyAttachment, Elasticity, Grab, Material, Member, Method, Obstacle, Particles, PinMotion, Scratch,
-    SelfCollision, StepContext, StepReport, SubstepPolicy, Tethers, Topology, WindSource, step,
-};
 use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothSprings, Fabric},
+    solver::{
+        AttachedPin, BodyAttachment, Elasticity, Grab, Material, Member, Method, Obstacle, Particles, PinMotion,
+        Scratch, SelfCollision, StepContext, StepReport, SubstepPolicy, Tethers, Topology, WindSource, step,
+    },
 };
 
 pub const GRAVITY: f32 = 9.81;

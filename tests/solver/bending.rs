@@ -8,8 +8,10 @@ use bevy::{
     mesh::VertexAttributeValues,
     prelude::*,
 };
-use bevy_drape::prelude::{ClothGrid, Fabric};
-use bevy_drape::solver::{Bend, Material, Method, measure::energy};
+use bevy_drape::{
+    prelude::{ClothGrid, Fabric},
+    solver::{Bend, Material, Method, measure::energy},
+};
 
 use crate::bench_bed::{self, Bed, GRAVITY, bare};
 

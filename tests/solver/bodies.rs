@@ -4,8 +4,10 @@ use bevy::{
     math::{Isometry3d, Mat3A, Vec3A},
     prelude::{Cuboid, Quat, Sphere, Vec3},
 };
-use bevy_drape::prelude::ClothSprings;
-use bevy_drape::solver::{Body, Material, Method, Obstacle, Solid};
+use bevy_drape::{
+    prelude::ClothSprings,
+    solver::{Body, Material, Method, Obstacle, Solid},
+};
 
 use crate::bench_bed::{Bed, STABLE, springs};
 

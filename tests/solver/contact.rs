@@ -4,8 +4,10 @@ use bevy::{
     math::{Dir3, Isometry3d, Vec3A, ops, primitives::InfinitePlane3d},
     prelude::{Capsule3d, Cone, Cuboid, Cylinder, Quat, Sphere, Vec3, default},
 };
-use bevy_drape::prelude::{ClothGrip, ClothSprings};
-use bevy_drape::solver::{Ellipsoid, Material, Method, Obstacle, Shape, Solid, TaperedCapsule};
+use bevy_drape::{
+    prelude::{ClothGrip, ClothSprings},
+    solver::{Ellipsoid, Material, Method, Obstacle, Shape, Solid, TaperedCapsule},
+};
 use proptest::prelude::*;
 
 use crate::{

@@ -1,8 +1,7 @@
 //! Three solvers, one set of constants: all come to the same motion as their steps shrink.
 
 use bevy::math::ops;
-use bevy_drape::prelude::ClothSprings;
-use bevy_drape::solver::Method;
+use bevy_drape::{prelude::ClothSprings, solver::Method};
 
 use crate::bench_bed::{Bed, STABLE, rms, springs};
 

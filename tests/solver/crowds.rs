@@ -6,9 +6,9 @@ use bevy::{
     math::{Isometry3d, Vec3A, primitives::InfinitePlane3d},
     prelude::{Capsule3d, Cone, Cuboid, Cylinder, Quat, Sphere, Vec3, default},
 };
-use bevy_drape::prelude::ClothSprings;
-use bevy_drape::solver::{
-    Ellipsoid, Material, MeshShape, Method, Obstacle, Shape, Solid, TaperedCapsule, TriangleMesh,
+use bevy_drape::{
+    prelude::ClothSprings,
+    solver::{Ellipsoid, Material, MeshShape, Method, Obstacle, Shape, Solid, TaperedCapsule, TriangleMesh},
 };
 use proptest::{prelude::*, test_runner::RngSeed};
 

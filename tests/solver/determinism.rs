@@ -7,8 +7,10 @@ use bevy::{
     prelude::*,
     tasks::{TaskPool, TaskPoolBuilder},
 };
-use bevy_drape::prelude::{ClothGrid, ClothGrip, ClothSprings, Fabric};
-use bevy_drape::solver::{Method, Obstacle, Solid};
+use bevy_drape::{
+    prelude::{ClothGrid, ClothGrip, ClothSprings, Fabric},
+    solver::{Method, Obstacle, Solid},
+};
 
 use crate::{
     bench_bed::{ALL, Bed, bare, bits, springs_in_air},

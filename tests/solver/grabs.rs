@@ -4,10 +4,10 @@ use bevy::{
     math::{Isometry3d, Vec3A},
     prelude::*,
 };
-use bevy_drape::solver::{Grab, Material, Method, Obstacle, Solid, Tether, Tethers, measure};
 use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothGrip, ClothSprings},
+    solver::{Grab, Material, Method, Obstacle, Solid, Tether, Tethers, measure},
 };
 
 use crate::bench_bed::{ALL, Bed, STABLE, springs_in_air};

@@ -1,10 +1,10 @@
 //! Which springs run along the warp.
 
 use bevy::{math::Mat3A, mesh::VertexAttributeValues, prelude::*};
-use bevy_drape::solver::{Grain, Spring, SpringKind, Topology};
 use bevy_drape::{
     build,
     prelude::{ATTRIBUTE_WARP, ClothGrid},
+    solver::{Grain, Spring, SpringKind, Topology},
 };
 
 /// 7 x 5 cells, each of 0.1 m.

@@ -8,10 +8,10 @@ use bevy::{
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
 };
-use bevy_drape::solver::{SpringKind, Topology};
 use bevy_drape::{
     build::{particles_of_vertices, topology_of},
     prelude::ClothGrid,
+    solver::{SpringKind, Topology},
 };
 use fastrand::Rng;
 

@@ -1,8 +1,10 @@
 //! Coarse lattices over a cloth: they span it, carry pulls across it, and change nothing else.
 
 use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::prelude::{ClothGrid, ClothSprings};
-use bevy_drape::solver::{LevelPass, Method, SubstepPolicy, measure, topology::level::TransferOperator};
+use bevy_drape::{
+    prelude::{ClothGrid, ClothSprings},
+    solver::{LevelPass, Method, SubstepPolicy, measure, topology::level::TransferOperator},
+};
 
 use crate::{
     bench_bed::{Bed, springs, springs_in_air},

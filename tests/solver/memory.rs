@@ -1,10 +1,10 @@
 //! A step doesn't allocate, and a cloth keeps little.
 
 use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::solver::{Member, Particles, SelfCollision, step, step_together};
 use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothGrip, ClothSprings},
+    solver::{Member, Particles, SelfCollision, step, step_together},
 };
 
 use crate::{

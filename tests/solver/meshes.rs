@@ -7,8 +7,10 @@ use bevy::{
     mesh::{Mesh, MeshBuilder, Meshable, SphereKind, VertexAttributeValues},
     prelude::{Quat, Sphere, Vec3},
 };
-use bevy_drape::prelude::ClothSprings;
-use bevy_drape::solver::{Material, MeshShape, Method, Obstacle, Shape, TriangleMesh};
+use bevy_drape::{
+    prelude::ClothSprings,
+    solver::{Material, MeshShape, Method, Obstacle, Shape, TriangleMesh},
+};
 
 use crate::bench_bed::{Bed, STABLE, springs};
 

@@ -3,8 +3,10 @@
 use core::f32::consts::TAU;
 
 use bevy::math::{Mat3A, Quat, Vec3A};
-use bevy_drape::prelude::{ClothGrid, Fabric};
-use bevy_drape::solver::{AttachedPin, Body, BodyAttachment, Method};
+use bevy_drape::{
+    prelude::{ClothGrid, Fabric},
+    solver::{AttachedPin, Body, BodyAttachment, Method},
+};
 
 use crate::bench_bed::{ALL, Bed, GRAVITY, STABLE, bare};
 

@@ -1,7 +1,9 @@
 //! The result doesn't hang on the time step or the number of substeps more than a game would notice.
 
-use bevy_drape::prelude::ClothSprings;
-use bevy_drape::solver::{Material, Method, SubstepPolicy};
+use bevy_drape::{
+    prelude::ClothSprings,
+    solver::{Material, Method, SubstepPolicy},
+};
 
 use crate::bench_bed::{Bed, STABLE, rms, springs_in_air};
 

@@ -1,9 +1,9 @@
 //! Whatever is thrown at them, the solvers for games stay finite and settle.
 
 use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::prelude::{ClothGrid, ClothSprings};
-use bevy_drape::solver::{
-    LevelPass, Material, Method, SpringKind, SubstepPolicy, constraint::unstructured::spring::strain,
+use bevy_drape::{
+    prelude::{ClothGrid, ClothSprings},
+    solver::{LevelPass, Material, Method, SpringKind, SubstepPolicy, constraint::unstructured::spring::strain},
 };
 use proptest::prelude::*;
 

@@ -8,8 +8,10 @@ use bevy::{
     math::{DVec3, Vec3, Vec3A, ops},
     mesh::Mesh,
 };
-use bevy_drape::prelude::{ClothGrid, ClothSprings};
-use bevy_drape::solver::{Material, Method, SelfCollision, measure};
+use bevy_drape::{
+    prelude::{ClothGrid, ClothSprings},
+    solver::{Material, Method, SelfCollision, measure},
+};
 
 use crate::{
     bench_bed::{Bed, STABLE, springs},

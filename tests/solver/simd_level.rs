@@ -4,8 +4,10 @@ use bevy::{
     math::{DVec3, Isometry3d, Vec3A},
     prelude::*,
 };
-use bevy_drape::prelude::{ClothGrid, ClothGrip, ClothSprings, Fabric};
-use bevy_drape::solver::{Elasticity, Gusts, Material, Method, Obstacle, SimdLevel, Solid, WindRegion, WindSource};
+use bevy_drape::{
+    prelude::{ClothGrid, ClothGrip, ClothSprings, Fabric},
+    solver::{Elasticity, Gusts, Material, Method, Obstacle, SimdLevel, Solid, WindRegion, WindSource},
+};
 
 use crate::{
     bench_bed::{ALL, Bed, bits, springs_in_air},

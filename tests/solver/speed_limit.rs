@@ -1,8 +1,10 @@
 //! No particle gets away.
 
 use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::prelude::ClothSprings;
-use bevy_drape::solver::{Material, Method};
+use bevy_drape::{
+    prelude::ClothSprings,
+    solver::{Material, Method},
+};
 
 use crate::bench_bed::{Bed, STABLE, springs_in_air};
 

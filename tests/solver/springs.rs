@@ -1,7 +1,9 @@
 //! The explicit solver's own number of substeps.
 
-use bevy_drape::prelude::ClothSprings;
-use bevy_drape::solver::{Elasticity, Method};
+use bevy_drape::{
+    prelude::ClothSprings,
+    solver::{Elasticity, Method},
+};
 
 use crate::bench_bed::{Bed, springs};
 

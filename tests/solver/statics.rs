@@ -1,8 +1,10 @@
 //! Motions and states whose answers are on paper.
 
 use bevy::math::{Vec3A, ops};
-use bevy_drape::prelude::{ClothGrid, ClothSprings, Fabric};
-use bevy_drape::solver::{Material, Method};
+use bevy_drape::{
+    prelude::{ClothGrid, ClothSprings, Fabric},
+    solver::{Material, Method},
+};
 
 use crate::bench_bed::{ALL, Bed, GRAVITY, bare, springs};
 

@@ -4,8 +4,10 @@ use bevy::{
     math::{Isometry3d, Vec3A, primitives::InfinitePlane3d},
     prelude::*,
 };
-use bevy_drape::prelude::{ClothGrid, ClothSprings};
-use bevy_drape::solver::{Method, Obstacle, Solid, SpringKind, SubstepPolicy, measure};
+use bevy_drape::{
+    prelude::{ClothGrid, ClothSprings},
+    solver::{Method, Obstacle, Solid, SpringKind, SubstepPolicy, measure},
+};
 
 use crate::bench_bed::{ALL, Bed, GRAVITY, STABLE, springs, springs_in_air};
 

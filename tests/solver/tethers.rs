@@ -8,10 +8,10 @@ use bevy::{
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
 };
-use bevy_drape::solver::Tethers;
 use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothSprings},
+    solver::Tethers,
 };
 
 use crate::bench_bed::{Bed, STABLE, springs};

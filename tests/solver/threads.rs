@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 
 use bevy::{math::ops, prelude::*};
-use bevy_drape::prelude::{ClothGrid, ClothSprings};
-use bevy_drape::solver::{MeshStructure, Method, SpringKind, SubstepPolicy, Topology, measure};
+use bevy_drape::{
+    prelude::{ClothGrid, ClothSprings},
+    solver::{MeshStructure, Method, SpringKind, SubstepPolicy, Topology, measure},
+};
 use fastrand::Rng;
 
 use crate::{

@@ -3,8 +3,11 @@
 use std::collections::BTreeSet;
 
 use bevy::{asset::RenderAssetUsages, math::Mat3A, mesh::PrimitiveTopology, prelude::*};
-use bevy_drape::solver::{SpringKind, Topology};
-use bevy_drape::{build::topology_of, prelude::ClothGrid};
+use bevy_drape::{
+    build::topology_of,
+    prelude::ClothGrid,
+    solver::{SpringKind, Topology},
+};
 use proptest::prelude::*;
 
 fn pairs(topology: &Topology, kind: SpringKind) -> BTreeSet<(u32, u32)> {

@@ -4,11 +4,14 @@ use bevy::{
     math::{Mat3A, Vec3A},
     prelude::Mesh,
 };
-use bevy_drape::solver::{
-    Material, Method, Obstacle, Particles, PinMotion, Scratch, SelfCollision, StepContext, SubstepPolicy, Tethers,
-    Topology, step,
+use bevy_drape::{
+    build,
+    prelude::Fabric,
+    solver::{
+        Material, Method, Obstacle, Particles, PinMotion, Scratch, SelfCollision, StepContext, SubstepPolicy, Tethers,
+        Topology, step,
+    },
 };
-use bevy_drape::{build, prelude::Fabric};
 
 use super::record::{Case, Rest};
 

@@ -7,8 +7,7 @@
 //! at each as over half a cell to both sides of it, so this is where a clamp of real cloth is.
 
 use bevy::math::Vec3A;
-use bevy_drape::prelude::Fabric;
-use bevy_drape::solver::Method;
+use bevy_drape::{prelude::Fabric, solver::Method};
 
 use super::{
     Extent,

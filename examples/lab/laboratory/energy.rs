@@ -1,8 +1,10 @@
 //! The energy of a swinging cloth that nothing damps.
 
 use bevy::math::{Vec3A, ops};
-use bevy_drape::prelude::{ClothGrid, Fabric};
-use bevy_drape::solver::{Method, measure};
+use bevy_drape::{
+    prelude::{ClothGrid, Fabric},
+    solver::{Method, measure},
+};
 
 use super::{
     Extent,

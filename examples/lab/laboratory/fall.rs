@@ -1,8 +1,10 @@
 //! A cloth in a vacuum falls as everything does, and turns on for ever.
 
 use bevy::math::{DVec3, Vec3A};
-use bevy_drape::prelude::{ClothGrid, Fabric};
-use bevy_drape::solver::Method;
+use bevy_drape::{
+    prelude::{ClothGrid, Fabric},
+    solver::Method,
+};
 
 use super::{
     Extent,

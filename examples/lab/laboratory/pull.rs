@@ -5,8 +5,7 @@
 //! everywhere.
 
 use bevy::math::Vec3A;
-use bevy_drape::prelude::Fabric;
-use bevy_drape::solver::Method;
+use bevy_drape::{prelude::Fabric, solver::Method};
 
 use super::{
     BRIEF, EFFORTS, Extent,

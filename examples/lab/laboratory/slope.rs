@@ -4,8 +4,10 @@ use bevy::{
     math::{Dir3, Isometry3d, primitives::InfinitePlane3d},
     prelude::*,
 };
-use bevy_drape::prelude::{ClothGrid, Fabric};
-use bevy_drape::solver::{Method, Obstacle, Solid};
+use bevy_drape::{
+    prelude::{ClothGrid, Fabric},
+    solver::{Method, Obstacle, Solid},
+};
 
 use super::{
     Extent,

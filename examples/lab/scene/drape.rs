@@ -6,8 +6,10 @@ use bevy::{
     math::{Isometry3d, Mat3A, Vec3A, primitives::InfinitePlane3d},
     prelude::*,
 };
-use bevy_drape::build;
-use bevy_drape::solver::{MeshShape, Shape, Solid, Topology, TriangleMesh};
+use bevy_drape::{
+    build,
+    solver::{MeshShape, Shape, Solid, Topology, TriangleMesh},
+};
 
 use super::{Cloth, Scene, Settings};
 

@@ -6,11 +6,14 @@ use bevy::{
     math::{Mat3A, Vec3A},
     prelude::*,
 };
-use bevy_drape::solver::{
-    Elasticity, LevelPass, Material, Method, Particles, Scratch, SelfCollision, SpringConstants, SpringKind,
-    SubstepPolicy, Topology,
+use bevy_drape::{
+    build,
+    prelude::ClothGrid,
+    solver::{
+        Elasticity, LevelPass, Material, Method, Particles, Scratch, SelfCollision, SpringConstants, SpringKind,
+        SubstepPolicy, Topology,
+    },
 };
-use bevy_drape::{build, prelude::ClothGrid};
 
 use super::{Cloth, FRAME, Rig};
 

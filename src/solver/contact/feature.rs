@@ -88,10 +88,7 @@ pub fn longest_edge<'a>(
     let at_rest = surface.longest_edge;
     let fit_once_stretched = near.filter(|obstacle| {
         let Shape::Solid(solid) = &obstacle.shape else { return false };
-        let fits = |edge| {
-            crate::solver::contact::feature::sharp_feature_cache::tightness(obstacle, edge, ctx).pierced_by(solid)
-                == Some(Sharpness::Tip)
-        };
+        let fits = |edge| sharp_feature_cache::tightness(obstacle, edge, ctx).pierced_by(solid) == Some(Sharpness::Tip);
         fits(2.0 * at_rest) && !fits(at_rest)
     });
     let ways = fit_once_stretched.map(|obstacle| obstacle.start.translation.distance(obstacle.end.translation));
@@ -114,8 +111,7 @@ pub fn sharpest<'a>(
 ) -> Option<(Sharpness, f32)> {
     let sharp = near.filter_map(|obstacle| match &obstacle.shape {
         Shape::Solid(solid) => {
-            let sharp = crate::solver::contact::feature::sharp_feature_cache::tightness(obstacle, longest_edge, ctx)
-                .pierced_by(solid)?;
+            let sharp = sharp_feature_cache::tightness(obstacle, longest_edge, ctx).pierced_by(solid)?;
             Some((sharp, obstacle.start.translation.distance(obstacle.end.translation)))
         }
         Shape::Mesh(_) => None,

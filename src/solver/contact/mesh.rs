@@ -137,7 +137,7 @@ impl MeshContacts {
             None => ([&*mesh.points; 2], &mesh.places),
             Some([from, to]) => {
                 if is_new {
-                    crate::solver::contact::mesh::candidates::follow(places, &mesh.surface, from, to);
+                    candidates::follow(places, &mesh.surface, from, to);
                 }
                 for (points, t) in [(&mut *then, span.start), (&mut *now, span.end)] {
                     points.clear();
@@ -242,7 +242,7 @@ impl DistanceQuery for MeshDistanceQuery<'_> {
     fn sample<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> SignedDistance<f32x8<S>> {
         let (known, is_closed) = (self.known(), self.mesh.is_closed);
         if known.planes.is_empty() {
-            crate::solver::contact::mesh::closest_point::nearest(simd, local, &known.now, known, is_closed).sample
+            closest_point::nearest(simd, local, &known.now, known, is_closed).sample
         } else {
             planes::highest(simd, local, known, is_closed)
         }
@@ -254,8 +254,7 @@ impl DistanceQuery for MeshDistanceQuery<'_> {
             return self.sample(simd, local);
         }
         let known = self.known();
-        crate::solver::contact::mesh::closest_point::nearest(simd, local, &known.then, known, self.mesh.is_closed)
-            .sample
+        closest_point::nearest(simd, local, &known.then, known, self.mesh.is_closed).sample
     }
 
     #[inline(always)]
@@ -279,11 +278,14 @@ impl DistanceQuery for MeshDistanceQuery<'_> {
             return Vec3x8::splat(simd, [0.0; 3]);
         }
         let known = self.known();
-        crate::solver::contact::mesh::closest_point::nearest(simd, local, &known.now, known, self.mesh.is_closed)
-            .way_from(simd, &known.then, &known.now)
+        closest_point::nearest(simd, local, &known.now, known, self.mesh.is_closed).way_from(
+            simd,
+            &known.then,
+            &known.now,
+        )
     }
 
     fn correction(&self, i: usize, sweep: &ObstacleSweep, position: Vec3A, previous: Vec3A) -> Option<Correction> {
-        crate::solver::contact::mesh::ccd::correction(self, i, sweep, position, previous)
+        ccd::correction(self, i, sweep, position, previous)
     }
 }

@@ -270,14 +270,7 @@ impl ParticleProjector<'_, '_> {
         let correction = query.correction(i, &self.sweep, position, previous)?;
         let inverse_mass = self.run.inverse_mass[block][i];
         let friction = self.sweep.friction;
-        crate::solver::contact::particle::response::one(
-            &correction,
-            [&mut position, &mut previous],
-            inverse_mass,
-            friction,
-            self.bodies,
-            self.obstacle,
-        );
+        response::one(&correction, [&mut position, &mut previous], inverse_mass, friction, self.bodies, self.obstacle);
         for (points, value) in [(&mut self.run.position[block], position), (&mut self.run.previous[block], previous)] {
             (points[0][i], points[1][i], points[2][i]) = value.into();
         }

@@ -1,5 +1,4 @@
-//! The particles of one cloth while a step runs: in blocks of eight, component by component, so that eight can be worked
-//! on side by side.
+//! Points and directions in blocks of eight, component by component, so that eight can be worked on side by side.
 
 use bevy::math::{Vec3A, Vec4};
 use fearless_simd::{dispatch, f32x4, f32x8, prelude::*};

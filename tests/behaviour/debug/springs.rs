@@ -1,8 +1,7 @@
 //! Springs and tethers lie on the cloth as it is drawn, in the colour of what the solver knows.
 
 use bevy::prelude::*;
-use bevy_drape::solver::SpringKind;
-use bevy_drape::{debug::*, prelude::*};
+use bevy_drape::{debug::*, prelude::*, solver::SpringKind};
 
 use super::*;
 

@@ -4,7 +4,7 @@ use bevy::math::Vec3A;
 
 use crate::solver::{
     contact::feature::pair::{FeaturePoints, give},
-    geometry::intersection::pierces,
+    geometry::{closest_point, intersection::pierces},
 };
 
 /// An edge that pierces a face of cloth, and the way out.
@@ -51,7 +51,7 @@ pub fn find(numbers: [[u32; 3]; 2], places: &[Vec3A], tangles: &mut Vec<Tangle>)
                 continue;
             }
             let way = crossing - normal * (2.0 * along.dot(crossing) / across);
-            let on = crate::solver::geometry::closest_point::on_triangle(place, corners[j]);
+            let on = closest_point::on_triangle(place, corners[j]);
             tangles.push(Tangle {
                 points: [numbers[i][from], numbers[i][to], numbers[j][0], numbers[j][1], numbers[j][2]],
                 weights: [1.0 - share, share, on.x, on.y, on.z],
