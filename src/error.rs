@@ -1,6 +1,7 @@
 //! Why a mesh can't be cloth, and what to do about it.
 
 use bevy::prelude::Reflect;
+use drape_solver::MeshError;
 use thiserror::Error;
 
 /// Why a cloth can't be built. The message names the cause and the mend.
@@ -17,9 +18,6 @@ pub enum ClothError {
     /// The position attribute is missing or isn't `Float32x3`.
     #[error("the mesh has no positions of three floats; insert `Mesh::ATTRIBUTE_POSITION` as `Float32x3`")]
     NoPositions,
-    /// The mesh has positions, and no triangle with an area.
-    #[error("the mesh has no triangle with an area; check its indices and positions")]
-    Empty,
     /// The mesh's data lives in the render world only.
     #[error(
         "the mesh is kept in the render world only; create or load it with `RenderAssetUsages::default()`, so that \
@@ -32,31 +30,9 @@ pub enum ClothError {
         /// What the asset server says.
         reason: String,
     },
-    /// A position is NaN or infinite.
-    #[error("the position of vertex {vertex} isn't finite; export the mesh again or mend that vertex")]
-    PositionNotFinite {
-        /// The mesh's vertex index.
-        vertex: u32,
-    },
-    /// A position is so far away that it can't be computed with.
-    #[error(
-        "the position of vertex {vertex} is {distance} m from the mesh's origin in the world's scale, which is too far to \
-         compute with; keep it below 10000000 m, by the mesh's units or the entity's scale"
-    )]
-    PositionTooFar {
-        /// The mesh's vertex index.
-        vertex: u32,
-        /// Its distance under the entity's scale, m.
-        distance: f32,
-    },
-    /// An index points past the last vertex.
-    #[error("a triangle uses vertex {vertex}, but the mesh has {count} vertices; mend its indices")]
-    IndexOutOfRange {
-        /// The index that is too large.
-        vertex: u32,
-        /// Number of vertices of the mesh.
-        count: u32,
-    },
+    /// The mesh's geometry can't be cloth.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// The entity's scale, or one of its parents', makes the mesh flat or is not finite.
     #[error("the entity's transform can't be inverted; make every scale of it and its parents finite and not zero")]
     FlatTransform,

@@ -6,6 +6,8 @@ use bevy::{
     prelude::*,
 };
 
+use crate::solver::SourceMesh;
+
 /// A rectangle of particles, a mesh to put cloth on.
 ///
 /// It lies in the XY plane, centred, facing +Z, with the top edge at +Y: a curtain or a flag. [`lying`](Self::lying)
@@ -43,39 +45,14 @@ impl ClothGrid {
 
 impl From<ClothGrid> for Mesh {
     fn from(grid: ClothGrid) -> Self {
-        let UVec2 { x: columns, y: rows } = grid.particles.max(UVec2::splat(2));
-        let grid = ClothGrid { particles: UVec2::new(columns, rows), ..grid };
-        let mut positions = Vec::new();
-        let mut uvs = Vec::new();
-        for row in 0..rows {
-            for column in 0..columns {
-                let uv = UVec2::new(column, row).as_vec2() / (grid.particles - 1).as_vec2();
-                let across = (uv - 0.5) * grid.size;
-                positions.push(if grid.lying { [across.x, 0.0, across.y] } else { [across.x, -across.y, 0.0] });
-                uvs.push(uv.to_array());
-            }
-        }
-        let normal = if grid.lying { Vec3::Y } else { Vec3::Z };
-        let normals = vec![normal.to_array(); positions.len()];
+        let SourceMesh { positions, triangles, normals, uvs, .. } =
+            SourceMesh::grid(grid.size, grid.particles, grid.lying);
+        let vectors = |values: Vec<Vec3>| -> Vec<[f32; 3]> { values.iter().map(Vec3::to_array).collect() };
+        let uvs: Vec<[f32; 2]> = uvs.iter().flatten().map(Vec2::to_array).collect();
         Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
-            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vectors(positions))
+            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vectors(normals.unwrap_or_default()))
             .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
-            .with_inserted_indices(Indices::U32(indices(&grid)))
+            .with_inserted_indices(Indices::U32(triangles.into_flattened()))
     }
-}
-
-/// Corners of all triangles of a grid.
-pub(crate) fn indices(grid: &ClothGrid) -> Vec<u32> {
-    let mut indices = Vec::new();
-    for row in 0..grid.particles.y - 1 {
-        for column in 0..grid.particles.x - 1 {
-            let a = grid.vertex(column, row);
-            let b = grid.vertex(column + 1, row);
-            let c = grid.vertex(column, row + 1);
-            let d = grid.vertex(column + 1, row + 1);
-            indices.extend(if (row + column) % 2 == 0 { [a, c, b, b, c, d] } else { [a, c, d, a, d, b] });
-        }
-    }
-    indices
 }

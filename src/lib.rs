@@ -56,7 +56,6 @@ mod pose;
 mod rest_scale;
 mod settings;
 mod simulate;
-pub mod solver;
 mod teleport;
 mod wind;
 
@@ -81,6 +80,7 @@ pub mod panel;
 pub mod picking;
 
 pub use collider::Obstacles;
+pub use drape_solver as solver;
 pub use error::ClothError;
 
 /// What a game needs.
@@ -96,7 +96,7 @@ pub mod prelude {
     #[cfg(feature = "rapier")]
     pub use crate::rapier::{ClothRapierPlugin, ClothRapierSettings};
     pub use crate::{
-        build::grain::ATTRIBUTE_WARP,
+        build::source::ATTRIBUTE_WARP,
         cloth::{Cloth, ClothFailed, ClothGravity, ClothReady, ClothReset, ClothSolver, ClothStatus, ResetCause},
         collider::{ClothCollider, ColliderShape},
         commands::ClothCommands,

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 
 use crate::collider::{ClothCollider, ColliderShape, error::ColliderError};
-use crate::grid::{self, ClothGrid};
+use crate::solver::SourceMesh;
 
 /// A terrain: heights on a grid, in the XZ plane around the entity's place.
 ///
@@ -71,8 +71,8 @@ impl HeightField {
         }
         let point = |(i, &height): (u32, &f32)| self.place(i, rows).extend(height).xzy();
         let points = (0..).zip(&self.heights).map(point).collect();
-        let grid = ClothGrid { size: self.size, particles: UVec2::new(self.columns, rows), lying: true };
-        Ok((points, grid::indices(&grid).as_chunks().0.to_vec()))
+        let grid = SourceMesh::grid(self.size, UVec2::new(self.columns, rows), true);
+        Ok((points, grid.triangles))
     }
 }
 

@@ -1,0 +1,21 @@
+//! Sorts bends into colours, and finds out what they are at rest.
+
+use super::{coloring, plate::Plate};
+use crate::{Bend, BendBatch};
+
+/// The bends of a plate in batches, for `count` particles.
+pub(super) fn of_plate(plate: &Plate, count: usize) -> (Vec<Bend>, Vec<BendBatch>) {
+    let all: Vec<(Bend, bool)> = plate.bends().collect();
+    batches(count, &all)
+}
+
+/// The bends in batches of one colour that are either woven or not.
+pub(super) fn batches(count: usize, all: &[(Bend, bool)]) -> (Vec<Bend>, Vec<BendBatch>) {
+    let (mut bends, mut batches) = (Vec::with_capacity(all.len()), Vec::new());
+    for woven in [false, true] {
+        let those = all.iter().filter(|(_, other)| *other == woven).map(|(bend, _)| *bend).collect();
+        let runs = coloring::sort(count, those, |bend: &Bend| bend.particles, &mut bends);
+        batches.extend(runs.into_iter().map(|range| BendBatch { range, woven }));
+    }
+    (bends, batches)
+}

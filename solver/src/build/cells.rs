@@ -1,0 +1,109 @@
+//! Finds the quads of a mesh that arrives triangulated: pairs of triangles that form a near-rectangle.
+
+use core::array;
+
+use bevy_math::Vec3;
+
+use super::edges::{Edges, HalfEdge};
+
+/// Largest |cos| of a corner of a cell: 70° to 110° count as nearly right.
+const MOST_COSINE: f32 = 0.342;
+
+/// Least cosine between the normals of a cell's two triangles: a cell is nearly flat.
+const LEAST_FLATNESS: f32 = 0.9;
+
+/// The cells of a mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Cells {
+    /// Corners of each cell, around it. The mesh's own diagonal joins the first and the third.
+    pub corners: Vec<[u32; 4]>,
+    /// Cell of each triangle, if it is in one.
+    pub of_triangle: Vec<Option<u32>>,
+}
+
+/// Largest |cos| of a corner of a cell whose springs can be a sheet, and largest cosine between its sides and what they
+/// should be along, the warp or across it.
+const MOST_ASKEW: f32 = 0.1;
+
+impl Cells {
+    /// Direction of the warp in each cell, given that in each triangle.
+    pub fn warp(&self, of_triangles: &[Vec3]) -> Vec<Vec3> {
+        let mut warp = vec![Vec3::Y; self.corners.len()];
+        for (cell, &of_triangle) in self.of_triangle.iter().zip(of_triangles) {
+            if let Some(cell) = cell {
+                warp[*cell as usize] = of_triangle;
+            }
+        }
+        warp
+    }
+
+    /// Those whose springs can be a sheet with the `warp` of each triangle: the others would be stiffer than it.
+    pub fn true_to(&self, rest: &[Vec3], warp: &[Vec3]) -> Self {
+        let is_true = |(corners, warp): (&[u32; 4], &Vec3)| {
+            let sides = sides(corners.map(|i| rest[i as usize]));
+            let along = [sides[0].dot(*warp).abs(), sides[1].dot(*warp).abs()];
+            largest_cosine(&sides) < MOST_ASKEW && along[0].min(along[1]) < MOST_ASKEW
+        };
+        let kept: Vec<bool> = self.corners.iter().zip(&self.warp(warp)).map(is_true).collect();
+        let numbers: Vec<u32> =
+            kept.iter().scan(0, |next, &kept| Some(core::mem::replace(next, *next + u32::from(kept)))).collect();
+        let number = |cell: Option<u32>| cell.filter(|&cell| kept[cell as usize]).map(|cell| numbers[cell as usize]);
+        Self {
+            corners: self.corners.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(corners, _)| *corners).collect(),
+            of_triangle: self.of_triangle.iter().map(|&cell| number(cell)).collect(),
+        }
+    }
+}
+
+/// Pairs triangles into cells, the most rectangular pairs first; each triangle is in one cell at most.
+pub(crate) fn find(rest: &[Vec3], triangles: &[[u32; 3]], edges: &Edges) -> Cells {
+    let mut candidates: Vec<(f32, &[HalfEdge])> = edges
+        .iter()
+        .filter_map(|sides| {
+            let [one, other] = sides else { return None };
+            Some((skew(rest, corners_of(one, other))?, sides))
+        })
+        .collect();
+    // Stable, so pairs that are equally rectangular keep the order of their edges.
+    candidates.sort_by(|(p, _), (q, _)| p.total_cmp(q));
+    let mut cells = Cells { corners: Vec::new(), of_triangle: vec![None; triangles.len()] };
+    for (_, sides) in candidates {
+        let pair = [sides[0].triangle as usize, sides[1].triangle as usize];
+        if pair.iter().all(|&t| cells.of_triangle[t].is_none()) {
+            for t in pair {
+                cells.of_triangle[t] = Some(cells.corners.len() as u32);
+            }
+            cells.corners.push(corners_of(&sides[0], &sides[1]));
+        }
+    }
+    cells
+}
+
+/// The quad of two triangles that share an edge: the edge's ends are its first and third corner.
+fn corners_of(one: &HalfEdge, other: &HalfEdge) -> [u32; 4] {
+    [one.a, one.opposite, one.b, other.opposite]
+}
+
+/// How far a quad is from a rectangle: the largest |cos| of its corners, rounded so that noise doesn't rank. None for a
+/// quad that is too far, folded or degenerate.
+fn skew(rest: &[Vec3], corners: [u32; 4]) -> Option<f32> {
+    let p = corners.map(|i| rest[i as usize]);
+    let skew = largest_cosine(&sides(p));
+    // Most pairs of triangles: their turn comes before the costlier look at their normals.
+    if skew > MOST_COSINE {
+        return None;
+    }
+    let normal = |a: Vec3, b: Vec3, c: Vec3| (b - a).cross(c - a).normalize_or_zero();
+    let flatness = normal(p[0], p[1], p[2]).dot(normal(p[0], p[2], p[3]));
+    (flatness >= LEAST_FLATNESS).then_some((skew * 1e3).round())
+}
+
+/// Directions of a quad's sides, around it.
+fn sides(corners: [Vec3; 4]) -> [Vec3; 4] {
+    array::from_fn(|i| (corners[(i + 1) % 4] - corners[i]).normalize_or_zero())
+}
+
+/// The largest |cos| of the corners between sides.
+fn largest_cosine(sides: &[Vec3; 4]) -> f32 {
+    (0..4).map(|i| sides[i].dot(sides[(i + 1) % 4]).abs()).fold(0.0, f32::max)
+}

@@ -1,0 +1,251 @@
+//! What is found against all pairs of features that there are.
+
+use fastrand::Rng;
+use proptest::prelude::*;
+
+use super::*;
+use crate::geometry::bvh::traversal::Traversal;
+
+/// A sheet of triangles on its way.
+struct Sheet {
+    rest: Vec<Vec3>,
+    surface: TriangleBvh,
+    places: BvhBounds,
+    position: Vec<Vec3A>,
+    way: Vec<Vec3A>,
+    radii: Vec<f32>,
+}
+
+const DISTANCE: f32 = 0.05;
+const SLACK: f32 = 0.03;
+
+/// Points that the sides of a sheet have.
+const SIDE: u32 = 5;
+
+impl Sheet {
+    /// Some `layers` of a square metre above each other, each facing up, at and around `height` (m).
+    fn new(layers: u32, height: f32, radius: f32, rng: &mut Rng) -> Self {
+        let count = SIDE * SIDE;
+        let place = |i: u32| Vec3::new((i % SIDE) as f32, 0.0, (i / SIDE % SIDE) as f32) / (SIDE - 1) as f32;
+        let rest: Vec<Vec3> = (0..layers * count).map(|i| place(i) + Vec3::Y * (i / count) as f32).collect();
+        let cells = (0..layers * count).filter(|i| i % SIDE < SIDE - 1 && i / SIDE % SIDE < SIDE - 1);
+        let triangles: Vec<[u32; 3]> =
+            cells.flat_map(|i| [[i, i + SIDE, i + 1], [i + 1, i + SIDE, i + SIDE + 1]]).collect();
+        let mut noise = |size: f32| (Vec3A::new(rng.f32(), rng.f32(), rng.f32()) - 0.5) * size;
+        let position: Vec<Vec3A> = (0..layers * count)
+            .map(|i| {
+                let layer = (i / count) as f32;
+                Vec3A::from(place(i)) + Vec3A::Y * (height + 0.1 * layer) + noise(0.1)
+            })
+            .collect();
+        let way = position.iter().map(|_| noise(0.1)).collect();
+        let radii =
+            if radius > 0.0 { position.iter().map(|_| (noise(1.0).x + 0.5) * radius).collect() } else { Vec::new() };
+        let mut places = BvhBounds::default();
+        let surface = TriangleBvh::new(&rest, &triangles);
+        let mut sheet = Self { rest, surface, places: BvhBounds::default(), position, way, radii };
+        let corners = |triangle: [u32; 3]| triangle.map(|i| sheet.position[i as usize]);
+        let margin = 0.5 * (DISTANCE + SLACK) + radius;
+        places.follow(&sheet.surface, |triangle| sheet.side(0).ways.bounds(triangle).grown(margin), Some(corners));
+        sheet.places = places;
+        sheet
+    }
+
+    fn side(&self, first: u32) -> ContactSide<'_> {
+        ContactSide {
+            surface: &self.surface,
+            places: &self.places,
+            ways: Displacements { position: &self.position, way: &self.way },
+            first,
+            sharper_than: 0.0,
+            has_faces: true,
+            radii: &self.radii,
+        }
+    }
+
+    fn count(&self) -> u32 {
+        self.position.len() as u32
+    }
+}
+
+/// All points on their ways.
+struct All {
+    position: Vec<Vec3A>,
+    way: Vec<Vec3A>,
+    radii: Vec<f32>,
+}
+
+impl All {
+    fn of(sheets: &[&Sheet]) -> Self {
+        let radii = |sheet: &Sheet| {
+            if sheet.radii.is_empty() { vec![0.0; sheet.position.len()] } else { sheet.radii.clone() }
+        };
+        Self {
+            position: sheets.iter().flat_map(|sheet| sheet.position.clone()).collect(),
+            way: sheets.iter().flat_map(|sheet| sheet.way.clone()).collect(),
+            radii: sheets.iter().flat_map(|sheet| radii(sheet)).collect(),
+        }
+    }
+
+    /// How near two features come to touching on their ways, at least, m; and how far from it they begin.
+    fn nearest(&self, features: Features, points: [u32; 4]) -> [f32; 2] {
+        let radius = |i: usize| self.radii[points[i] as usize];
+        let room = match features {
+            Features::PointFace | Features::PointPoint => radius(0),
+            Features::EdgeEdge => radius(2).min(radius(3)),
+        };
+        let at = |share: f32| {
+            let places = points.map(|i| self.position[i as usize] + self.way[i as usize] * share);
+            features.nearest(places).between.length() - room
+        };
+        [(0..=10).map(|i| at(i as f32 / 10.0)).fold(f32::INFINITY, f32::min), at(0.0)]
+    }
+}
+
+/// A name for a pair, whichever way around it is found.
+fn name(features: Features, [a, b, c, d]: [u32; 4]) -> (u8, [u32; 4]) {
+    let sorted = |mut points: [u32; 3]| {
+        points.sort_unstable();
+        points
+    };
+    match features {
+        Features::PointFace => {
+            let [b, c, d] = sorted([b, c, d]);
+            (0, [a, b, c, d])
+        }
+        Features::EdgeEdge => {
+            let [one, other] = [[a.min(b), a.max(b)], [c.min(d), c.max(d)]];
+            let [[a, b], [c, d]] = if one < other { [one, other] } else { [other, one] };
+            (1, [a, b, c, d])
+        }
+        Features::PointPoint => (2, [a.min(b), a.max(b), 0, 0]),
+    }
+}
+
+/// All pairs of features of two sheets, whose points are numbered one after the other.
+fn pairs(a: &Sheet, b: &Sheet) -> Vec<(Features, [u32; 4])> {
+    let first = a.count();
+    let faces = |sheet: &Sheet, first: u32| -> Vec<[u32; 3]> {
+        sheet.surface.triangles.iter().map(|triangle| triangle.map(|i| i + first)).collect()
+    };
+    let (faces_a, faces_b) = (faces(a, 0), faces(b, first));
+    let points_a = (0..first).flat_map(|point| faces_b.iter().map(move |&[p, q, r]| [point, p, q, r]));
+    let points_b = (first..first + b.count()).flat_map(|point| faces_a.iter().map(move |&[p, q, r]| [point, p, q, r]));
+    let edges_b: Vec<[u32; 2]> = b.surface.edges().map(|edge| edge.map(|i| i + first)).collect();
+    let edges = a.surface.edges().flat_map(|[p, q]| edges_b.iter().map(move |&[u, v]| [p, q, u, v]));
+    let points = points_a.chain(points_b).map(|points| (Features::PointFace, points));
+    points.chain(edges.map(|points| (Features::EdgeEdge, points))).collect()
+}
+
+fn reach(rest: Option<&[Vec3]>) -> QueryMargin<'_> {
+    QueryMargin { distance: DISTANCE, slack: SLACK, friction: 0.3, rest }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn all_features_that_may_touch_are_found_once(seed in any::<u64>(), height in 0.0_f32..0.3, radius in prop_oneof![Just(0.0_f32), 0.01_f32..0.1]) {
+        let mut rng = Rng::with_seed(seed);
+        let (a, b) = (Sheet::new(1, 0.0, 0.0, &mut rng), Sheet::new(1, height, radius, &mut rng));
+        let (one, other) = (a.side(0), b.side(a.count()));
+        let mut found = Vec::new();
+        let mut leaves = Vec::new();
+        Traversal::default().between((&a.surface, &a.places), (&b.surface, &b.places), |p, q| leaves.push((p, q)));
+        for (p, q) in leaves {
+            for (s, t) in a.surface.of_leaf(p).flat_map(|s| b.surface.of_leaf(q).map(move |t| (s, t))) {
+                pairs_between((&one, s), (&other, t), &reach(None), |f| found.push(f.pair));
+            }
+        }
+        let all = All::of(&[&a, &b]);
+        let mut names: Vec<_> = found.iter().map(|pair| name(pair.features, pair.points)).collect();
+        names.sort_unstable();
+        prop_assert!(names.is_sorted_by(|a, b| a < b), "a pair is found twice");
+        for (features, points) in pairs(&a, &b) {
+            let [nearest, start] = all.nearest(features, points);
+            let is_found = names.binary_search(&name(features, points)).is_ok();
+            prop_assert!(is_found || nearest > DISTANCE + SLACK - 1e-5, "{features:?} {points:?}: {nearest} m");
+            // None goes farther on its way than 0.1 m along each axis.
+            let farthest = DISTANCE + SLACK + 0.35 + radius;
+            prop_assert!(!is_found || start < farthest, "{features:?} {points:?}: {start} m");
+        }
+        for pair in &found {
+            let nearest = pair.features.nearest(pair.points.map(|i| all.position[i as usize])).between;
+            prop_assert!((pair.gap - nearest.length()).abs() < 1e-6);
+            prop_assert!(nearest.distance(pair.normal * pair.gap) < 1e-5, "{nearest} along {}", pair.normal);
+            let radius = |i: usize| all.radii[pair.points[i] as usize];
+            let [near, far] = if pair.features == Features::EdgeEdge { [radius(2), radius(3)] } else { [radius(0); 2] };
+            prop_assert!((pair.distance - DISTANCE - near).abs() < 1e-6);
+            prop_assert!((pair.distance + pair.taper - DISTANCE - far).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn all_balls_that_may_touch_are_found_once(seed in any::<u64>(), height in 0.0_f32..0.3) {
+        let mut rng = Rng::with_seed(seed);
+        let (a, b) = (Sheet::new(1, 0.0, 0.0, &mut rng), Sheet::new(1, height, 0.0, &mut rng));
+        let (one, other) = (a.side(0), b.side(a.count()));
+        let mut found = Vec::new();
+        let mut leaves = Vec::new();
+        Traversal::default().between((&a.surface, &a.places), (&b.surface, &b.places), |p, q| leaves.push((p, q)));
+        for (p, q) in leaves {
+            balls_between((&one, p), (&other, q), &reach(None), |f| found.push(f.pair));
+        }
+        let all = All::of(&[&a, &b]);
+        let mut names: Vec<_> = found.iter().map(|pair| name(pair.features, pair.points)).collect();
+        names.sort_unstable();
+        prop_assert!(names.is_sorted_by(|a, b| a < b), "a pair is found twice");
+        let (first, last) = (a.count(), a.count() + b.count());
+        for (p, q) in (0..first).flat_map(|p| (first..last).map(move |q| (p, q))) {
+            let [nearest, _] = all.nearest(Features::PointPoint, [p, q, q, q]);
+            let is_found = names.binary_search(&name(Features::PointPoint, [p, q, q, q])).is_ok();
+            prop_assert!(is_found || nearest > DISTANCE + SLACK - 1e-5, "{p} {q}: {nearest} m");
+        }
+    }
+
+    #[test]
+    fn what_of_one_cloth_may_touch_is_found_once_and_keeps_less_than_at_rest(seed in any::<u64>()) {
+        let rng = &mut Rng::with_seed(seed);
+        let mut sheet = Sheet::new(2, 0.0, 0.0, rng);
+        // Crumpled, so that triangles with a common corner are looked at too.
+        for place in &mut sheet.position {
+            *place += (Vec3A::new(rng.f32(), rng.f32(), rng.f32()) - 0.5) * 0.5;
+        }
+        // So much that what is a cell apart has less.
+        let kept = 0.3;
+        let (side, reach) = (sheet.side(0), QueryMargin { distance: kept, ..reach(Some(&sheet.rest)) });
+        let mut found = Vec::new();
+        let count = sheet.surface.triangles.len();
+        for (s, t) in (0..count).flat_map(|s| (s + 1..count).map(move |t| (s, t))) {
+            pairs_between((&side, s), (&side, t), &reach, |f| found.push(f.pair));
+        }
+        let mut names: Vec<_> = found.iter().map(|pair| name(pair.features, pair.points)).collect();
+        names.sort_unstable();
+        prop_assert!(names.is_sorted_by(|a, b| a < b), "a pair is found twice");
+        let all = All::of(&[&sheet]);
+        let layer = |i: u32| i / (SIDE * SIDE);
+        // Between the layers: within one, what shares corners is told apart by how it is folded.
+        let points = (0..sheet.count()).flat_map(|point| sheet.surface.triangles.iter().map(move |&[p, q, r]| [point, p, q, r]));
+        let edges: Vec<_> = sheet.surface.edges().collect();
+        let edges = edges.iter().flat_map(|&[p, q]| edges.iter().map(move |&[u, v]| [p, q, u, v]));
+        let points = points.map(|points| (Features::PointFace, points));
+        for (features, points) in points.chain(edges.map(|points| (Features::EdgeEdge, points))) {
+            if layer(points[0]) == layer(points[3]) {
+                continue;
+            }
+            let [nearest, _] = all.nearest(features, points);
+            let is_found = names.binary_search(&name(features, points)).is_ok();
+            prop_assert!(is_found || nearest > kept + SLACK - 1e-5, "{features:?} {points:?}: {nearest} m");
+        }
+        for pair in &found {
+            let distinct = match pair.features {
+                Features::PointFace => !pair.points[1..].contains(&pair.points[0]),
+                Features::EdgeEdge => !pair.points[..2].iter().any(|end| pair.points[2..].contains(end)),
+                Features::PointPoint => pair.points[0] != pair.points[1],
+            };
+            prop_assert!(distinct, "{pair:?} shares a corner");
+            let rest = pair.features.nearest(pair.points.map(|i| sheet.rest[i as usize].into())).between.length();
+            prop_assert!((pair.distance - kept.min(AT_REST * rest)).abs() < 1e-6, "{pair:?}: {rest} m at rest");
+        }
+    }
+}

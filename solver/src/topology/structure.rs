@@ -1,0 +1,54 @@
+//! What a mesh was found to be: that decides how well strands hold it.
+
+use core::fmt;
+
+use crate::topology::{Topology, strand_pack::StrandPack};
+
+/// How a cloth's springs are solved by [`Method::Strands`](crate::input::Method::Strands). Written out, it is a text such as
+/// "64 rows, 64 columns", "190 threads" or "springs in 14 colours".
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshStructure {
+    /// As rows and columns: the mesh is one rectangle, or a tube.
+    Grid {
+        /// Number of rows.
+        rows: usize,
+        /// Number of columns.
+        columns: usize,
+        /// Whether rows are rings.
+        closed: bool,
+    },
+    /// As threads that go straight on from edge to edge: the mesh is regular.
+    Strands {
+        /// Number of threads.
+        count: usize,
+    },
+    /// One by one, those that share no particle side by side: the mesh is irregular.
+    Unstructured {
+        /// Number of groups that share no particle.
+        colors: usize,
+    },
+}
+
+impl fmt::Display for MeshStructure {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Grid { rows, columns, closed: false } => write!(f, "{rows} rows, {columns} columns"),
+            Self::Grid { rows, columns, closed: true } => write!(f, "{rows} rings, {columns} columns"),
+            Self::Strands { count } => write!(f, "{count} threads"),
+            Self::Unstructured { colors } => write!(f, "springs in {colors} colours"),
+        }
+    }
+}
+
+impl Topology {
+    /// What the mesh was found to be.
+    pub fn structure(&self) -> MeshStructure {
+        match &self.lattice {
+            Some(lattice) => {
+                MeshStructure::Grid { rows: lattice.rows, columns: lattice.columns, closed: lattice.along_rows.closed }
+            }
+            None if self.strand_packs.is_empty() => MeshStructure::Unstructured { colors: self.batches.len() },
+            None => MeshStructure::Strands { count: self.strand_packs.iter().map(StrandPack::thread_count).sum() },
+        }
+    }
+}

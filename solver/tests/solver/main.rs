@@ -1,0 +1,32 @@
+//! The solver alone, without an engine: against answers on paper, for its bits, its memory and its robustness.
+
+mod air;
+mod bench_bed;
+mod bending;
+mod bodies;
+mod boundaries;
+mod contact;
+mod convergence;
+mod crowds;
+mod determinism;
+mod golden;
+mod grabs;
+mod grain;
+mod lattices;
+mod levels;
+mod memory;
+mod meshes;
+mod mounts;
+mod rates;
+mod robustness;
+mod self_collision;
+mod sheets;
+mod simd_level;
+mod speed_limit;
+mod springs;
+mod stages;
+mod statics;
+mod strands;
+mod tethers;
+mod threads;
+mod topology;
