@@ -2,14 +2,10 @@
 //! light from above still covers. Space takes the next fabric.
 
 mod common;
-#[path = "lab/laboratory/mesh/mod.rs"]
-#[allow(dead_code, unused_imports, reason = "the laboratory has more pieces of cloth than a disc")]
-mod mesh;
-#[path = "lab/laboratory/shadow.rs"]
-mod shadow;
 
 use bevy::{mesh::VertexAttributeValues, prelude::*};
 use bevy_drape::prelude::*;
+use drape_lab::laboratory::{mesh, shadow};
 
 /// Radii of the cloth and of its support, m.
 const RADIUS: f64 = 0.15;

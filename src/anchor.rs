@@ -6,13 +6,15 @@ use bevy::{
 };
 
 use crate::{
-    build::{Blending, TetherBuild},
     cloth::ClothStatus,
     draw::mesh::ClothMesh,
     origin,
     pins::{PinTarget, Pins, targets_by_particle},
     pose::{Poses, is_invertible},
-    solver::PinMotion,
+    solver::{
+        PinMotion,
+        build::{blend::BlendWeightBuild, geodesic::TetherBuild},
+    },
     state::{ClothState, Work},
     teleport::Jump,
 };
@@ -83,7 +85,7 @@ pub(crate) fn hold(state: &mut ClothState, targets: &[PinTarget], cloth: Entity,
     state.blend_weights = None;
     state.blending = (carriers.len() > 1).then(|| {
         let held = pins.iter().map(|pin| (pin.particle, pin.carrier));
-        Box::new(Blending::begin(held.collect()))
+        Box::new(BlendWeightBuild::begin(held.collect()))
     });
     state.pins = pins;
     state.carriers = carriers;

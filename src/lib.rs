@@ -107,7 +107,7 @@ pub mod prelude {
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
         shift::WorldShiftCommands,
-        solver::{Ellipsoid, LevelPass, SelfCollision, Solid, TaperedCapsule},
+        solver::{Ellipsoid, LevelPass, MeshError, SelfCollision, Solid, TaperedCapsule},
         state::ClothState,
         teleport::ColliderTeleportThreshold,
         wind::{Wind, WindShape},

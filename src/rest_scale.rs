@@ -5,9 +5,8 @@ use std::sync::Arc;
 use bevy::math::Mat3A;
 
 use crate::{
-    build::stretch::stretch,
     pose::is_invertible,
-    solver::{Tethers, Topology},
+    solver::{Tethers, Topology, build::stretch::stretch},
     state::ClothState,
 };
 

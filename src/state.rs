@@ -10,7 +10,7 @@ use bevy::{
 
 use crate::{
     anchor::{Carrier, HeldPin},
-    build::{BlendWeights, Blending, TetherBuild, plan::PendingBuild, weld::NO_PARTICLE},
+    build::plan::PendingBuild,
     cloth::{Cloth, ClothSolver},
     draw::shading::particle_normals,
     grab::Grabs,
@@ -18,6 +18,11 @@ use crate::{
     solver::{
         self, AttachedPin, BodyAttachment, BodyDisplacement, BodyImpulse, Energy, Grab, Material, MeshStructure,
         Obstacle, Particles, PinMotion, StepReport, Strain, SubstepPolicy, Tether, Tethers, Topology, WindSource,
+        build::{
+            blend::{BlendWeightBuild, BlendWeights},
+            geodesic::TetherBuild,
+            weld::NO_PARTICLE,
+        },
     },
     teleport::Jump,
 };
@@ -69,7 +74,7 @@ pub struct ClothState {
     /// By which weights its particles are drawn with several carriers.
     pub(crate) blend_weights: Option<BlendWeights>,
     /// Weights that are being worked out anew.
-    pub(crate) blending: Option<Box<Blending>>,
+    pub(crate) blending: Option<Box<BlendWeightBuild>>,
     /// Number of steps that moved something since the cloth was built: drawing skips what hasn't moved.
     pub(crate) steps: u64,
     /// The latest step moved nothing.

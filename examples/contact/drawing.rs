@@ -6,8 +6,9 @@ use bevy::{
     prelude::*,
 };
 use bevy_drape::solver::{Ellipsoid, Solid};
+use drape_lab::scene;
 
-use super::{Stage, common, scene};
+use super::{Stage, common};
 
 /// How far scenes without a ground are off it, m.
 const LIFT: f32 = 1.0;

@@ -5,8 +5,7 @@ use std::io;
 use bevy::math::Vec3;
 use bevy_drape::solver::SelfCollision;
 use clap::ValueEnum;
-
-use super::scene::{Scene, Settings, bullet, drape, fold, layers, needle, ribbon, storm, twist};
+use drape_lab::scene::{Scene, Settings, bullet, drape, fold, layers, needle, ribbon, storm, twist};
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Experiment {

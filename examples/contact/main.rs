@@ -9,15 +9,12 @@
 mod common;
 mod drawing;
 mod experiment;
-#[allow(dead_code, unused_imports, reason = "shared with the lab, which measures more than there is to see")]
-#[path = "../lab/scene/mod.rs"]
-mod scene;
 
 use bevy::prelude::*;
 use clap::Parser;
+use drape_lab::scene::{FRAME, Scene};
 
 use experiment::Experiment;
-use scene::Scene;
 
 #[derive(Parser)]
 struct Arguments {
@@ -46,7 +43,7 @@ fn main() -> std::io::Result<AppExit> {
         common::spawn_camera(&mut commands, eye, look_at);
     };
     Ok(common::app_with(shared, "Contact", experiment.about())
-        .insert_resource(Time::<Fixed>::from_seconds(scene::FRAME.into()))
+        .insert_resource(Time::<Fixed>::from_seconds(FRAME.into()))
         .insert_resource(Stage(scene))
         .add_systems(Startup, (common::spawn_scenery, setup, drawing::spawn))
         .add_systems(FixedUpdate, step)

@@ -1,6 +1,6 @@
 //! The solver and the build stage, without an `App`.
 //!
-//! `cargo bench --bench solver`; the lab example measures whole scenes.
+//! `cargo bench -p drape_lab`; the lab measures whole scenes.
 
 use bevy::{math::Mat3A, math::Vec3A, prelude::Mesh};
 use bevy_drape::{

@@ -20,7 +20,7 @@ mod pull;
 mod rates;
 mod record;
 mod roots;
-mod shadow;
+pub mod shadow;
 mod shear;
 mod slope;
 mod terminal_speed;

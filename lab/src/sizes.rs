@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::measure;
+use crate::command_line::measure;
 
 /// Particles along each side.
 pub const ALL: [u32; 6] = [16, 32, 64, 128, 256, 512];

@@ -4,7 +4,7 @@ use std::io;
 
 use serde_json::{Value, json};
 
-use super::measure;
+use crate::command_line::measure;
 
 /// How often everything with a limit on its time is run, by turns.
 const ROUNDS: usize = 5;

@@ -10,11 +10,11 @@ use bevy::{
     prelude::*,
 };
 
-use super::{geodesic::tethers, job::Jobs, particles_of, source::SourceMesh};
+use super::{job::Jobs, source_of};
 use crate::{
     draw::binding::Binding,
     error::ClothError,
-    solver::{Tethers, Topology},
+    solver::{self, SourceMesh, Tethers, Topology, tethers},
 };
 
 /// Corners of the triangles of a mesh that is built at once, at most. A grid of 70 x 70 vertices has so many and takes
@@ -148,13 +148,13 @@ impl KnownPlans {
 impl Plan {
     /// Makes the plan for `mesh`, of parts that are `known` where they are.
     fn make(mesh: &Mesh, to_world: Mat3A, known: &KnownPlans) -> Result<Self, ClothError> {
-        let source = SourceMesh::read(mesh)?.wound_by_normals();
+        let source = source_of(mesh)?;
         let positions = source.positions.iter().map(Vec3::to_array).collect();
         let key = (hash(&source), bits(to_world));
         if let Some((topology, binding)) = known.get(&key) {
             return Ok(Self { topology, binding, positions, key });
         }
-        let (welded, topology) = particles_of(&source, to_world)?;
+        let (welded, topology) = solver::build(&source, to_world)?;
         Ok(Self { topology: Arc::new(topology), binding: Arc::new(Binding::new(&source, &welded)), positions, key })
     }
 }

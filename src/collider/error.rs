@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 #[cfg(feature = "mesh_colliders")]
-use crate::error::ClothError;
+use crate::{error::ClothError, solver::MeshError};
 
 /// Why a collider is left out. The message names the cause, where that isn't plain, and the mend.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -64,4 +64,11 @@ pub(crate) enum ColliderError {
         /// How many of them were found before one was missing.
         found: usize,
     },
+}
+
+#[cfg(feature = "mesh_colliders")]
+impl From<MeshError> for ColliderError {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error.into())
+    }
 }

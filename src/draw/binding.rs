@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy::{platform::collections::HashMap, prelude::*};
 
-use crate::build::{source::SourceMesh, weld::Welded};
+use crate::solver::{SourceMesh, Welded};
 
 /// Normals that round to the same multiples of this are one: a smooth surface rather than a hard edge.
 const SAME_NORMAL: f32 = 0.02;
@@ -12,7 +12,7 @@ const SAME_NORMAL: f32 = 0.02;
 /// From particles to the vertices of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Binding {
-    /// Particle of each vertex, or [`NO_PARTICLE`](crate::build::weld::NO_PARTICLE).
+    /// Particle of each vertex, or [`NO_PARTICLE`](crate::solver::build::weld::NO_PARTICLE).
     pub particle_of_vertex: Arc<[u32]>,
     /// The mesh's own triangles, as vertices.
     pub triangles: Vec<[u32; 3]>,

@@ -10,7 +10,7 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{anchor::Carrier, build::BlendWeights, pose::is_invertible, state::ClothState};
+use crate::{anchor::Carrier, pose::is_invertible, solver::build::blend::BlendWeights, state::ClothState};
 
 /// What takes the particles of a cloth from a moment of its latest step to where they are drawn.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use super::{binding::Binding, carrier::Carry, shading};
-use crate::{build::weld::NO_PARTICLE, clock::ClothClock, parallel, pose::is_invertible, state::ClothState};
+use crate::{clock::ClothClock, parallel, pose::is_invertible, solver::build::weld::NO_PARTICLE, state::ClothState};
 
 /// The meshes of a cloth: the one that it was made from, and its own copy, which is drawn.
 #[derive(Component, Clone, Debug)]

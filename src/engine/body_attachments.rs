@@ -5,11 +5,10 @@ use bevy::{math::Vec3A, prelude::*};
 use super::{Bodies, Mover};
 use crate::{
     anchor,
-    build::TetherBuild,
     cloth::ClothStatus,
     pins::PinTarget,
     pose::Poses,
-    solver::{AttachedPin, Body, BodyAttachment},
+    solver::{AttachedPin, Body, BodyAttachment, build::geodesic::TetherBuild},
     state::ClothState,
 };
 

@@ -7,9 +7,9 @@ use bevy::{mesh::VertexAttributeValues, prelude::*};
 
 use super::{ClothEdge, PinSelector, PinTarget, Pins};
 use crate::{
-    build::{source::read_uvs, weld::NO_PARTICLE},
+    build::source::read_uvs,
     error::ClothError,
-    solver::Topology,
+    solver::{Topology, build::weld::NO_PARTICLE},
 };
 
 /// Vertices within this of a sheet's largest or smallest UV are on its edge.

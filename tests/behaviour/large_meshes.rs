@@ -245,7 +245,7 @@ fn an_error_is_told_once_and_mended_later() {
     let cloth = spawn_cloth(&mut app, broken, ());
     app.update();
     finish(&mut app, cloth);
-    let error = ClothError::PositionNotFinite { vertex: 77 };
+    let error: ClothError = MeshError::PositionNotFinite { vertex: 77 }.into();
     assert_eq!(status(&app, cloth), ClothStatus::Failed(error.clone()));
     for _ in 0..20 {
         get_mut::<Fabric>(&mut app, cloth).set_changed();

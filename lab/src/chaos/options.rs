@@ -23,7 +23,6 @@ pub struct Options {
 
 impl Options {
     /// A run of these seeds that tells nothing.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for the tests"))]
     pub fn of(seeds: Range<u64>) -> Self {
         Self { seeds: Seeds(seeds), verbose: false, budget: 60.0, threads: None }
     }

@@ -55,7 +55,6 @@ impl Tally {
     }
 
     /// Of each seed, what its cloths came to.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for the tests"))]
     pub fn fingerprints(&self) -> Vec<u64> {
         self.outcomes.iter().map(|outcome| outcome.fingerprint).collect()
     }

@@ -42,7 +42,7 @@ impl Air {
 }
 
 /// Adds the velocity of all winds at each of `places` to `air`, as a cloth with particles at `position` feels it there.
-pub(crate) fn add_air_velocity(winds: &[WindSource], position: &[Vec3A], places: &[Vec3A], air: &mut [Vec3A]) {
+pub fn add_air_velocity(winds: &[WindSource], position: &[Vec3A], places: &[Vec3A], air: &mut [Vec3A]) {
     for wind in winds {
         let field = gusts::GustField::sample(wind, position);
         for (air, &place) in air.iter_mut().zip(places) {

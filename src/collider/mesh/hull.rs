@@ -4,7 +4,7 @@ use bevy::{math::Mat3A, prelude::*};
 use parry3d::transformation::try_convex_hull;
 
 use super::triangles::{Made, THINNEST, clean, key, numbers, numbers_of, places, thickness};
-use crate::{build::weld::weld, collider::error::ColliderError};
+use crate::{collider::error::ColliderError, solver::build::weld::weld};
 
 /// By how much points are moved to find their hull, as a share of their size. The hull is of them as they are.
 const UNEVEN: f32 = 1e-5;

@@ -17,10 +17,10 @@ use super::{
     triangles::{self, Made},
 };
 use crate::{
-    build::{job::Jobs, source::SourceMesh},
+    build::{job::Jobs, source},
     collider::error::ColliderError,
     error::ClothError,
-    solver::TriangleMesh,
+    solver::{SourceMesh, TriangleMesh},
 };
 
 /// Corners of triangles that are worked on within a step at most: those of 8000 triangles take some 10 ms, the longest
@@ -169,7 +169,7 @@ fn make_from_mesh(mesh: &Mesh, recipe: &Recipe) -> Outcome {
     if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
         return Err(ClothError::NotInMainWorld.into());
     }
-    let SourceMesh { positions, triangles, .. } = SourceMesh::read(mesh)?;
+    let SourceMesh { positions, triangles, .. } = source::read(mesh)?;
     let make = if matches!(recipe.source, Source::ConvexHull(_)) { hull_of } else { triangles::surface };
     let Made { mesh: made, origin } = make(&positions, &triangles, recipe.scale)?;
     Ok(Prepared { mesh: Arc::new(made), skin: Skin::read(mesh, &positions, &origin).map(Arc::new) })

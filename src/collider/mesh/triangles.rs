@@ -7,11 +7,12 @@ use bevy::{
 };
 use parry3d::shape::{TriMesh, TriMeshFlags};
 
-use crate::collider::error::ColliderError;
 use crate::{
-    build::{is_near_enough, weld::weld},
-    error::ClothError,
-    solver::TriangleMesh,
+    collider::error::ColliderError,
+    solver::{
+        MeshError, TriangleMesh,
+        build::{is_near_enough, weld::weld},
+    },
 };
 
 /// A closed surface whose volume is less than this share of its area times its size is two sheets, one on the other.
@@ -72,7 +73,7 @@ pub(super) fn places(points: &[Vec3], numbers: &[u32], scale: Mat3A) -> Result<V
         return Err(ColliderError::NoSize);
     }
     let distance = places[far].abs().max_element();
-    Err(ClothError::PositionTooFar { vertex: numbers[far], distance }.into())
+    Err(MeshError::PositionTooFar { vertex: numbers[far], distance }.into())
 }
 
 /// Drops what is no triangle or there already, and finds out whether the others enclose a volume.
@@ -81,7 +82,7 @@ pub(super) fn clean(points: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Made,
     let flags = TriMeshFlags::DELETE_DEGENERATE_TRIANGLES
         | TriMeshFlags::DELETE_DUPLICATE_TRIANGLES
         | TriMeshFlags::HALF_EDGE_TOPOLOGY;
-    let mesh = TriMesh::with_flags(points, triangles, flags).map_err(|_| ClothError::Empty)?;
+    let mesh = TriMesh::with_flags(points, triangles, flags).map_err(|_| MeshError::Empty)?;
     // Without a topology, an edge has too many triangles, or two that face differently.
     let has_no_border = mesh.topology().is_some_and(|topology| {
         let mut sides = topology.half_edges.iter();
@@ -107,7 +108,7 @@ fn with_area(points: &[Vec3], triangles: &[[u32; 3]], is_closed: bool) -> Result
     };
     let triangles: Vec<[u32; 3]> = triangles.iter().filter(has_area).copied().collect();
     if triangles.is_empty() {
-        return Err(ClothError::Empty.into());
+        return Err(MeshError::Empty.into());
     }
     Ok(TriangleMesh::new(points.iter().copied().map(Vec3A::from).collect(), &triangles, is_closed))
 }
@@ -231,10 +232,10 @@ pub(super) mod tests {
         assert_eq!((made.mesh.triangles().len(), made.mesh.is_closed), (12, true));
         let slim = [[Vec3::ZERO, Vec3::X * 2.0, Vec3::X], [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y * 2e-7]];
         for points in slim {
-            assert_eq!(refusal(surface(&points, &[[0, 1, 2]], PLAIN)), ClothError::Empty.into());
+            assert_eq!(refusal(surface(&points, &[[0, 1, 2]], PLAIN)), MeshError::Empty.into());
         }
-        assert_eq!(refusal(surface(&points, &odd[..2], PLAIN)), ClothError::Empty.into());
-        assert_eq!(refusal(surface(&[], &[], PLAIN)), ClothError::Empty.into());
+        assert_eq!(refusal(surface(&points, &odd[..2], PLAIN)), MeshError::Empty.into());
+        assert_eq!(refusal(surface(&[], &[], PLAIN)), MeshError::Empty.into());
     }
 
     #[test]
