@@ -46,16 +46,16 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
 }
 
 /// Holds the scarf by the middle of its upper edge, and leads that along an eight.
-fn wave(time: Res<Time>, mut scarves: Query<(&mut ClothState, &mut Waved)>) {
+fn wave(time: Res<Time>, mut scarves: Query<(&ClothState, &mut ClothGrabs, &mut Waved)>) {
     let t = 3.0 * time.elapsed_secs();
     let hand = Vec3::new(1.2 + 0.35 * ops::sin(t), 1.6, 0.2 * ops::sin(2.0 * t));
-    for (mut scarf, mut waved) in &mut scarves {
+    for (scarf, mut grabs, mut waved) in &mut scarves {
         if waved.0.is_none() {
             // None until the cloth is ready.
-            waved.0 = scarf.nearest_point(hand).and_then(|point| scarf.grab(point, ClothGrip::default()));
+            waved.0 = scarf.nearest_point(hand).and_then(|point| grabs.grab(scarf, point, ClothGrip::default()));
         }
         if let Some(hold) = waved.0
-            && !scarf.move_grab(hold, hand)
+            && !grabs.move_grab(hold, hand)
         {
             // Put back, as by a reset: take hold of it again.
             waved.0 = None;

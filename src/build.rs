@@ -4,13 +4,12 @@ use bevy::{math::Mat3A, prelude::*};
 
 use crate::{
     error::ClothError,
+    mesh_input,
     solver::{self, SourceMesh, Topology, build::weld::NO_PARTICLE},
 };
 
 mod candidate;
-pub(crate) mod job;
 pub(crate) mod plan;
-pub(crate) mod source;
 pub(crate) mod system;
 
 pub use crate::solver::{grab_tethers, tethers};
@@ -21,7 +20,7 @@ pub use crate::solver::{grab_tethers, tethers};
 ///
 /// A [`ClothError`] where the mesh can't be read.
 pub fn source_of(mesh: &Mesh) -> Result<SourceMesh, ClothError> {
-    Ok(source::read(mesh)?.wound_by_normals())
+    Ok(mesh_input::read(mesh)?.wound_by_normals())
 }
 
 /// The springs of a mesh, for those who run the [`solver`](crate::solver) themselves.

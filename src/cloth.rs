@@ -1,4 +1,4 @@
-//! The component that makes a mesh cloth, what it reports, and what it announces.
+//! The component that makes a mesh cloth, and the settings that are in force.
 
 use bevy::prelude::*;
 
@@ -7,8 +7,17 @@ use crate::{
     fabric::Fabric,
     pins::Pins,
     solver::{LevelPass, Method, SelfCollision, SubstepPolicy, Topology},
-    state::ClothState,
+    state::{
+        ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, StepInput, Warned,
+    },
 };
+
+mod in_force;
+pub(crate) mod margin;
+pub(crate) mod resolution;
+pub(crate) mod update;
+
+pub(crate) use in_force::InForce;
 
 /// How a cloth is moved on in time. All three read the same physical constants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
@@ -47,7 +56,9 @@ impl From<ClothSolver> for Method {
 /// Add, change or remove it at any time. Removing it leaves the mesh as it is drawn at that moment.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
-#[require(Fabric, Pins, ClothState, ClothStatus, Transform)]
+#[require(Fabric, Pins, Transform)]
+#[require(ClothState, ClothAttachments, ClothGrabs, ClothReport, ClothStatus)]
+#[require(InForce, PendingBuild, Requests, StepInput, Warned)]
 pub struct Cloth {
     /// How it is moved on in time.
     pub solver: ClothSolver,
@@ -136,18 +147,20 @@ const XPBD_SUBSTEPS: u32 = 8;
 
 impl Cloth {
     /// Substeps and levels for a mesh.
-    pub(crate) fn effort(&self, topology: &Topology) -> SubstepPolicy {
-        let is_woven = self.solver == ClothSolver::Strands;
-        let mut effort = match self.substeps {
-            Some(substeps) if is_woven => SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, topology)),
-            None if is_woven => SubstepPolicy::to_hold(self.max_strain, topology),
+    pub(crate) fn substep_policy(&self, topology: &Topology) -> SubstepPolicy {
+        let has_strands = self.solver == ClothSolver::Strands;
+        let mut policy = match self.substeps {
+            Some(substeps) if has_strands => {
+                SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, topology))
+            }
+            None if has_strands => SubstepPolicy::to_hold(self.max_strain, topology),
             substeps => SubstepPolicy::fixed(substeps.unwrap_or(XPBD_SUBSTEPS), Vec::new()),
         };
         if let Some(levels) = &self.levels {
-            effort.levels.clone_from(levels);
-            effort.contact_levels.clone_from(levels);
+            policy.levels.clone_from(levels);
+            policy.contact_levels.clone_from(levels);
         }
-        effort
+        policy
     }
 
     /// Checks the ranges of all settings.
@@ -175,68 +188,4 @@ impl Cloth {
         check("Cloth::self_distance", self.self_distance, self.self_distance > 0.0, "greater than 0 m")?;
         check("Cloth::self_friction", self.self_friction, self.self_friction >= 0.0, "0 or greater")
     }
-}
-
-/// Whether an entity's cloth runs, and if not, why not.
-#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
-#[component(clone_behavior = Ignore)]
-#[reflect(Component, Default, Debug, Clone, PartialEq)]
-pub enum ClothStatus {
-    /// The mesh isn't there yet; the cloth is built as soon as it is.
-    #[default]
-    Waiting,
-    /// The mesh is large and is made into cloth beside the frames. It is drawn as it is until that is done.
-    Building,
-    /// The cloth is simulated. Where its mesh is changed or it is reset, it stays so until the new cloth is done.
-    Ready,
-    /// The cloth can't be built. It is tried again when the mesh or any of the cloth's components change.
-    Failed(ClothError),
-}
-
-/// Gravity on all cloth, m/s². Earth's along -Y by default. None while it isn't finite, with one warning.
-#[derive(Resource, Clone, Copy, Debug, PartialEq, Reflect)]
-#[reflect(Resource, Default, Debug, Clone, PartialEq)]
-pub struct ClothGravity(pub Vec3);
-
-impl Default for ClothGravity {
-    fn default() -> Self {
-        Self(Vec3::NEG_Y * 9.81)
-    }
-}
-
-/// A mesh has become cloth. Its [`ClothState`] can be read from now on.
-#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ClothReady {
-    /// The cloth.
-    pub entity: Entity,
-}
-
-/// A mesh can't become cloth.
-#[derive(EntityEvent, Clone, Debug, PartialEq)]
-pub struct ClothFailed {
-    /// The cloth.
-    pub entity: Entity,
-    /// Why.
-    pub error: ClothError,
-}
-
-/// A cloth has been put back.
-#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ClothReset {
-    /// The cloth.
-    pub entity: Entity,
-    /// Why, and to which pose.
-    pub cause: ResetCause,
-}
-
-/// Why a cloth has been put back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
-#[reflect(Debug, Clone, PartialEq)]
-pub enum ResetCause {
-    /// [`reset_cloth`](crate::prelude::ClothCommands::reset_cloth): it is back in its rest shape.
-    Requested,
-    /// Its mesh has changed: it is in its new rest shape.
-    Rebuilt,
-    /// A position or velocity was no longer finite: it is in its last finite pose, at rest.
-    NotFinite,
 }

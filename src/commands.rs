@@ -3,12 +3,16 @@
 use bevy::{ecs::system::EntityCommands, prelude::*};
 
 use crate::{
-    cloth::ClothStatus,
-    draw::mesh::ClothMesh,
+    draw::ClothMesh,
     pins::{PinGroup, PinTarget, Pins, targets_by_particle},
-    state::ClothState,
-    teleport::{Along, teleport},
+    state::{ClothState, ClothStatus, Requests},
 };
+use teleport::{Along, teleport};
+
+mod shift;
+mod teleport;
+
+pub use shift::WorldShiftCommands;
 
 /// Commands for an entity with a [`Cloth`](crate::prelude::Cloth), on any other of which they do nothing, and teleports of
 /// any entity.
@@ -48,8 +52,8 @@ pub trait ClothCommands {
 impl ClothCommands for EntityCommands<'_> {
     fn reset_cloth(&mut self) -> &mut Self {
         self.queue_silenced(|mut entity: EntityWorldMut| {
-            if let Some(mut state) = entity.get_mut::<ClothState>() {
-                state.requests.reset = true;
+            if let Some(mut requests) = entity.get_mut::<Requests>() {
+                requests.reset = true;
             }
         })
     }

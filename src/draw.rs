@@ -1,7 +1,11 @@
 //! The state becomes pixels: interpolated particles, normals and tangents, the mesh.
 
-pub(crate) mod binding;
-pub(crate) mod carrier;
-pub(crate) mod mesh;
-pub(crate) mod shading;
-pub(crate) mod skin;
+mod binding;
+mod carry;
+mod mesh;
+mod shading;
+mod skin;
+
+pub(crate) use binding::Binding;
+pub(crate) use mesh::{ClothMesh, Drawn, release, shape_cloths, write_meshes};
+pub(crate) use skin::{Lost, TakenOff, copy_without_skin, fit_skins};

@@ -5,16 +5,21 @@ use std::sync::Arc;
 
 use bevy::{math::Isometry3d, prelude::*};
 
-use crate::{collider::Obstacles, solver::Obstacle, teleport::JumpDetection};
+use crate::{frame::JumpDetection, solver::Obstacle, surroundings::collider::Obstacles};
 
+#[cfg(feature = "avian")]
+pub(crate) mod avian;
 mod bodies;
 mod body_attachments;
 mod parts;
 mod pushes;
+#[cfg(feature = "rapier")]
+pub(crate) mod rapier;
+mod schedule;
 
 use bodies::Step;
 pub(crate) use bodies::{Bodies, Dynamic, Mover};
-pub(crate) use body_attachments::{mount_pins, note_carriers, untie_mounted};
+pub(crate) use body_attachments::{attach_pins, note_anchors, untie_attached};
 pub(crate) use parts::{Part, Shapes, capsule, mesh};
 pub(crate) use pushes::{Pushes, carry, collect_pushes, strayed};
 

@@ -39,77 +39,67 @@ struct Readme;
 mod cloth;
 mod error;
 mod fabric;
-mod grid;
+mod pins;
 mod state;
 
 pub mod build;
-mod pins;
+mod mesh_input;
 
-mod anchor;
-mod clock;
-mod collider;
-mod grab;
-mod margin;
-mod origin;
-mod parallel;
-mod pose;
-mod rest_scale;
-mod settings;
+mod attach;
+mod frame;
 mod simulate;
-mod teleport;
-mod wind;
+mod surroundings;
 
 mod draw;
 
 mod commands;
 mod schedule;
-mod shift;
 
-#[cfg(feature = "avian")]
-mod avian;
 #[cfg(any(feature = "avian", feature = "rapier"))]
 mod engine;
-#[cfg(feature = "rapier")]
-mod rapier;
+#[cfg(any(feature = "debug", feature = "panel", feature = "picking"))]
+mod tools;
 
-#[cfg(feature = "debug")]
-pub mod debug;
-#[cfg(feature = "panel")]
-pub mod panel;
-#[cfg(feature = "picking")]
-pub mod picking;
-
-pub use collider::Obstacles;
 pub use drape_solver as solver;
 pub use error::ClothError;
+pub use surroundings::collider::Obstacles;
+#[cfg(feature = "debug")]
+pub use tools::debug;
+#[cfg(feature = "panel")]
+pub use tools::panel;
+#[cfg(feature = "picking")]
+pub use tools::picking;
 
 /// What a game needs.
 pub mod prelude {
-    #[cfg(feature = "avian")]
-    pub use crate::avian::{ClothAvianPlugin, ClothAvianSettings};
-    #[cfg(feature = "mesh_colliders")]
-    pub use crate::collider::mesh::HeightField;
     #[cfg(any(feature = "avian", feature = "rapier"))]
     pub use crate::engine::NotClothCollider;
-    #[cfg(feature = "picking")]
-    pub use crate::picking::{ClothPickingPlugin, ClothPickingSettings, PointerGrabs};
+    #[cfg(feature = "avian")]
+    pub use crate::engine::avian::{ClothAvianPlugin, ClothAvianSettings};
     #[cfg(feature = "rapier")]
-    pub use crate::rapier::{ClothRapierPlugin, ClothRapierSettings};
+    pub use crate::engine::rapier::{ClothRapierPlugin, ClothRapierSettings};
+    #[cfg(feature = "mesh_colliders")]
+    pub use crate::surroundings::collider::mesh::HeightField;
+    #[cfg(feature = "picking")]
+    pub use crate::tools::picking::{ClothPickingPlugin, ClothPickingSettings, PointerGrabs};
     pub use crate::{
-        build::source::ATTRIBUTE_WARP,
-        cloth::{Cloth, ClothFailed, ClothGravity, ClothReady, ClothReset, ClothSolver, ClothStatus, ResetCause},
-        collider::{ClothCollider, ColliderShape},
-        commands::ClothCommands,
+        cloth::{Cloth, ClothSolver},
+        commands::{ClothCommands, WorldShiftCommands},
         error::ClothError,
         fabric::{ClothSprings, Fabric, FabricPreset, file::FabricFileError, handle::FabricHandle},
-        grab::{ClothGrabbed, ClothGrip, ClothPoint, ClothReleased, GrabId},
-        grid::ClothGrid,
+        frame::ColliderTeleportThreshold,
+        mesh_input::{ATTRIBUTE_WARP, ClothGrid},
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
-        shift::WorldShiftCommands,
         solver::{Ellipsoid, LevelPass, MeshError, SelfCollision, Solid, TaperedCapsule},
-        state::ClothState,
-        teleport::ColliderTeleportThreshold,
-        wind::{Wind, WindShape},
+        state::{
+            ClothAttachments, ClothFailed, ClothGrabbed, ClothGrabs, ClothGrip, ClothPoint, ClothReady, ClothReleased,
+            ClothReport, ClothReset, ClothState, ClothStatus, GrabId, ResetCause,
+        },
+        surroundings::{
+            ClothGravity,
+            collider::{ClothCollider, ColliderShape},
+            wind::{Wind, WindShape},
+        },
     };
 }

@@ -1,4 +1,4 @@
-//! When everything happens. The only place that orders systems.
+//! When everything happens: the plugin, and the order of its systems. Bridges to physics engines put theirs between these.
 
 use bevy::{
     app::FixedMain,
@@ -7,19 +7,15 @@ use bevy::{
     prelude::*,
 };
 
-#[cfg(any(feature = "avian", feature = "rapier"))]
-use bevy::ecs::schedule::ScheduleConfigs;
-#[cfg(any(feature = "avian", feature = "rapier", feature = "debug", feature = "panel"))]
+#[cfg(any(feature = "debug", feature = "panel"))]
 use bevy::ecs::system::ScheduleSystem;
 
-#[cfg(any(feature = "avian", feature = "rapier"))]
-use crate::engine::{self, Engine, Pushes};
 use crate::{
-    anchor, build,
-    clock::{self, ClothRun},
-    cloth, collider, draw,
+    attach, build, cloth, draw,
     fabric::{self, Fabric},
-    grab, settings, simulate, teleport, wind,
+    frame::{self, ClothRun},
+    simulate,
+    surroundings::{self, collider, wind},
 };
 
 /// The stages of a cloth's frame, in their order. Games order their systems around them.
@@ -93,13 +89,13 @@ impl ClothPlugin {
 impl Plugin for ClothPlugin {
     fn build(&self, app: &mut App) {
         fabric::loader::register(app);
-        app.init_resource::<cloth::ClothGravity>()
+        app.init_resource::<surroundings::ClothGravity>()
             .init_resource::<collider::Obstacles>()
             .init_resource::<wind::Winds>()
             .init_resource::<build::plan::PlanCache>()
-            .init_resource::<clock::StepNumber>()
-            .init_resource::<teleport::Teleported>()
-            .init_resource::<teleport::ColliderTeleportThreshold>()
+            .init_resource::<frame::StepNumber>()
+            .init_resource::<frame::Teleported>()
+            .init_resource::<frame::ColliderTeleportThreshold>()
             .insert_resource(ClothRun { fixed: self.is_fixed(), parallel: self.parallel })
             .configure_sets(PreUpdate, ClothSystems::Prepare.run_if(has_what_it_needs))
             .configure_sets(
@@ -133,13 +129,13 @@ impl Plugin for ClothPlugin {
                 self.schedule,
                 (
                     (
-                        clock::count_steps,
-                        teleport::forget_teleports,
-                        settings::update_settings,
-                        anchor::update_pins,
-                        anchor::tie_tethers,
-                        anchor::follow_targets,
-                        grab::lead_grabs,
+                        frame::count_steps,
+                        frame::forget_teleports,
+                        cloth::update::update_settings,
+                        attach::pins::update_pins,
+                        attach::pins::advance_builds,
+                        attach::pins::follow_targets,
+                        attach::grabs::lead_grabs,
                         collider::gather_obstacles,
                         wind::gather_winds,
                     )
@@ -151,22 +147,22 @@ impl Plugin for ClothPlugin {
             )
             .add_systems(
                 PostUpdate,
-                (grab::send_grab_events, draw::mesh::shape_cloths, draw::mesh::write_meshes)
+                (attach::grabs::send_grab_events, draw::shape_cloths, draw::write_meshes)
                     .chain()
                     .in_set(ClothSystems::Draw),
             )
-            .add_systems(PostUpdate, draw::skin::fit_skins.in_set(ClothSystems::Draw))
+            .add_systems(PostUpdate, draw::fit_skins.in_set(ClothSystems::Draw))
             // Once more for meshes that are swapped after that: one that is drawn with the wrong skin ends the app.
-            .add_systems(Last, draw::skin::fit_skins.run_if(has_what_it_needs))
+            .add_systems(Last, draw::fit_skins.run_if(has_what_it_needs))
             .add_observer(build::system::on_cloth_removed)
             .add_observer(collider::on_collider_removed)
-            .add_observer(settings::on_springs_removed);
+            .add_observer(cloth::update::on_springs_removed);
         #[cfg(feature = "mesh_colliders")]
         app.init_resource::<collider::mesh::PreparedMeshes>().add_systems(
             self.schedule,
             collider::mesh::prepare_meshes
                 .in_set(ClothSystems::Gather)
-                .after(teleport::forget_teleports)
+                .after(frame::forget_teleports)
                 .before(collider::gather_obstacles),
         );
     }
@@ -196,63 +192,14 @@ fn has_what_it_needs(time: Option<Res<Time>>, meshes: Option<Res<Assets<Mesh>>>)
 /// that is known whichever was added first. Says so where there is none.
 #[cfg(any(feature = "debug", feature = "panel"))]
 pub(crate) fn run_after_steps<M>(app: &mut App, plugin: &str, system: impl IntoScheduleConfigs<ScheduleSystem, M>) {
-    match app.get_added_plugins::<ClothPlugin>().first().map(|cloth| cloth.schedule) {
+    match schedule_of_steps(app) {
         Some(schedule) => drop(app.add_systems(schedule, system.in_set(ClothSystems::Finalize))),
         None => warn!("{plugin} can't do its work: it needs ClothPlugin; add it to the app"),
     }
 }
 
-/// Has the systems of a bridge to a physics engine run: the first gathers colliders, the second pushes bodies. For the
-/// `finish` of `plugin`, when it is known in which schedule. All that `engine_is_done` runs comes first, if that is in the
-/// same schedule.
-#[cfg(any(feature = "avian", feature = "rapier"))]
-pub(crate) fn bridge(
-    app: &mut App,
-    plugin: &str,
-    engine: Engine,
-    engine_is_done: impl SystemSet,
-    (gather, push): (ScheduleConfigs<ScheduleSystem>, ScheduleConfigs<ScheduleSystem>),
-) {
-    let Some(schedule) = app.get_added_plugins::<ClothPlugin>().first().map(|cloth| cloth.schedule) else {
-        warn!("{plugin} can't do its work: it needs ClothPlugin; add it to the app");
-        return;
-    };
-    if !app.world().contains_resource::<Pushes>() {
-        app.init_resource::<Pushes>()
-            .configure_sets(
-                schedule,
-                (
-                    // In the same order always: contact depends on that of the obstacles.
-                    (BridgeSystems::Gather(Engine::Avian), BridgeSystems::Gather(Engine::Rapier))
-                        .chain()
-                        .in_set(ClothSystems::Gather)
-                        .after(collider::gather_obstacles),
-                    (BridgeSystems::Push(Engine::Avian), BridgeSystems::Push(Engine::Rapier))
-                        .chain()
-                        .in_set(ClothSystems::Finalize),
-                ),
-            )
-            .add_systems(
-                schedule,
-                (
-                    engine::untie_mounted.in_set(ClothSystems::Gather).after(BridgeSystems::Gather(Engine::Rapier)),
-                    engine::collect_pushes.in_set(ClothSystems::Finalize).before(BridgeSystems::Push(Engine::Avian)),
-                    engine::note_carriers.in_set(ClothSystems::Finalize).after(BridgeSystems::Push(Engine::Rapier)),
-                ),
-            );
-    }
-    app.configure_sets(schedule, ClothSystems::Gather.after(engine_is_done)).add_systems(
-        schedule,
-        (gather.in_set(BridgeSystems::Gather(engine)), push.in_set(BridgeSystems::Push(engine))),
-    );
-}
-
-/// What bridges to physics engines do.
-#[cfg(any(feature = "avian", feature = "rapier"))]
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum BridgeSystems {
-    /// Adds an engine's colliders to the obstacles.
-    Gather(Engine),
-    /// Pushes an engine's bodies.
-    Push(Engine),
+/// The schedule that [`ClothPlugin`] was given, if it has been added.
+#[cfg(any(feature = "avian", feature = "rapier", feature = "debug", feature = "panel"))]
+pub(crate) fn schedule_of_steps(app: &App) -> Option<InternedScheduleLabel> {
+    app.get_added_plugins::<ClothPlugin>().first().map(|cloth| cloth.schedule)
 }

@@ -13,14 +13,13 @@ use bevy::{
 mod meeting;
 
 use crate::{
-    clock::ClothRun,
-    cloth::{ClothGravity, ClothReset, ClothSolver, ClothStatus, ResetCause},
-    collider::Obstacles,
-    parallel,
+    cloth::{ClothSolver, InForce},
+    frame::{self, ClothRun},
     solver::{self, Member, Particles, Scratch, StepContext, StepReport, Topology},
-    state::{ClothState, Given, Work},
-    wind::Winds,
+    state::{BodyPush, ClothReport, ClothReset, ClothState, ClothStatus, ResetCause, StepInput, Warned},
+    surroundings::{ClothGravity, collider::Obstacles, wind::Winds},
 };
+use meeting::Stepped;
 
 /// Working memory for as many cloths as are stepped at a time, which is far less than for all.
 #[derive(Default)]
@@ -48,7 +47,7 @@ pub(crate) struct Surroundings<'w> {
 /// Steps all cloths, several at a time: each reads what is shared and writes only itself, so the order doesn't matter. Those
 /// that may touch each other are stepped together.
 pub(crate) fn step_cloths(
-    mut cloths: Query<(Entity, &ClothStatus, &mut ClothState)>,
+    mut cloths: Query<(&ClothStatus, Stepped)>,
     run: Res<ClothRun>,
     time: Res<Time>,
     surroundings: Surroundings,
@@ -62,38 +61,35 @@ pub(crate) fn step_cloths(
         warn_once!("ClothGravity isn't finite: cloth has no gravity until it is; set it to a finite acceleration");
         Vec3::ZERO
     };
-    let ready = cloths.iter_mut().filter(|(_, status, _)| **status == ClothStatus::Ready);
-    let ready: Vec<(Entity, Mut<ClothState>)> = ready.map(|(entity, _, state)| (entity, state)).collect();
-    let pool = parallel::pool(run.parallel);
-    parallel::for_each(meeting::group(ready, time.delta_secs()), run.parallel, |mut group| {
-        let mut states: Vec<&mut ClothState> = group.iter_mut().map(|(_, state)| &mut **state).collect();
-        step_group(&mut states, &time, gravity, &surroundings, pool, &scratch_pool);
+    let ready = cloths.iter_mut().filter(|(status, _)| **status == ClothStatus::Ready);
+    let ready: Vec<_> = ready.map(|(_, cloth)| cloth).collect();
+    let pool = frame::pool(run.parallel);
+    frame::for_each(meeting::group(ready, time.delta_secs()), run.parallel, |mut group| {
+        step_group(&mut group, time.delta_secs(), gravity, &surroundings, pool, &scratch_pool);
     });
 }
 
-/// Steps cloths that may touch each other.
+/// Steps cloths that may touch each other by `dt` seconds.
 fn step_group(
-    states: &mut [&mut ClothState],
-    time: &Time,
+    cloths: &mut [meeting::SteppedItem],
+    dt: f32,
     gravity: Vec3,
     surroundings: &Surroundings,
     pool: Option<&TaskPool>,
     scratch_pool: &ScratchPool,
 ) {
-    for state in &mut *states {
-        state.is_taken_back = false;
-        state.work.given.clear();
+    for cloth in &mut *cloths {
+        cloth.report.is_taken_back = false;
+        cloth.input.pushes.clear();
     }
     // Paused: nothing is new to draw, and what pushes the cloth is kept until time goes on.
-    if time.delta_secs() <= 0.0 {
+    if dt <= 0.0 {
         return;
     }
-    let mut scratches: Vec<Scratch> = states.iter().map(|_| scratch_pool.take()).collect();
+    let mut scratches: Vec<Scratch> = cloths.iter().map(|_| scratch_pool.take()).collect();
     let begun = Instant::now();
-    let mut parts: Vec<Parts> = states
-        .iter_mut()
-        .filter_map(|state| Parts::of(state, time.delta_secs(), gravity, surroundings, pool))
-        .collect();
+    let mut parts: Vec<Parts> =
+        cloths.iter_mut().filter_map(|cloth| Parts::of(cloth, dt, gravity, surroundings, pool)).collect();
     let first = parts.first().map_or(Vec3::ZERO, |parts| parts.origin);
     let mut members: Vec<Member> = parts
         .iter_mut()
@@ -106,24 +102,25 @@ fn step_group(
     solver::step_together(&mut members);
     let reports: Vec<Option<StepReport>> = members.into_iter().map(|member| member.report).collect();
     drop(parts);
-    let taken = begun.elapsed() / states.len().max(1) as u32;
-    let stepped = states.iter_mut().filter(|state| state.material.is_some());
-    for ((state, report), scratch) in stepped.zip(reports).zip(&scratches) {
-        state.step_time = taken;
-        take_pushes(&mut state.work, scratch);
-        end_step(state, report);
+    let taken = begun.elapsed() / cloths.len().max(1) as u32;
+    let stepped = cloths.iter_mut().filter(|cloth| cloth.state.material.is_some());
+    for ((cloth, report), scratch) in stepped.zip(reports).zip(&scratches) {
+        cloth.report.step_time = taken;
+        take_pushes(&mut cloth.input, scratch);
+        end_step(&mut cloth.state, &mut cloth.report, &mut cloth.input, report);
     }
     scratches.into_iter().rev().for_each(|scratch| scratch_pool.give_back(scratch));
 }
 
 /// Keeps what bodies have been given.
-fn take_pushes(work: &mut Work, scratch: &Scratch) {
-    let Work { obstacles, owners, mount_owners, given, .. } = work;
-    let pushes = scratch.pushes().iter().zip(scratch.strays()).map(|(push, stray)| (*push, *stray));
-    let bodies = obstacles.iter().zip(&*owners).zip(pushes).filter(|((obstacle, _), _)| obstacle.body.is_some());
+fn take_pushes(input: &mut StepInput, scratch: &Scratch) {
+    let StepInput { obstacles, owners, attachment_owners, pushes, .. } = input;
+    let by_contact = scratch.pushes().iter().zip(scratch.strays()).map(|(push, stray)| (*push, *stray));
+    let bodies = obstacles.iter().zip(&*owners).zip(by_contact).filter(|((obstacle, _), _)| obstacle.body.is_some());
     let bodies = bodies.map(|((_, owner), pushed)| (*owner, pushed));
-    let body_attachments = mount_owners.iter().copied().zip(scratch.pulls().iter().copied());
-    given.extend(bodies.chain(body_attachments).map(|(to, (push, stray))| Given { to, push, stray }));
+    let by_pins = attachment_owners.iter().copied().zip(scratch.pulls().iter().copied());
+    let push = |(to, (impulse, displacement))| BodyPush { to, impulse, displacement };
+    pushes.extend(bodies.chain(by_pins).map(push));
 }
 
 /// What of a cloth goes into a step.
@@ -137,17 +134,19 @@ struct Parts<'a> {
 impl<'a> Parts<'a> {
     /// None where the cloth isn't made of anything yet.
     fn of(
-        state: &'a mut ClothState,
+        cloth: &'a mut meeting::SteppedItem,
         dt: f32,
         gravity: Vec3,
         surroundings: &Surroundings,
         pool: Option<&'a TaskPool>,
     ) -> Option<Self> {
+        let InForce { settings, policy } = cloth.in_force;
+        let margin = cloth.in_force.collision_margin(&cloth.state);
+        let state = &mut *cloth.state;
         let material = state.material?;
         state.step_start.clone_from(&state.particles.position);
-        let margin = state.collision_margin();
-        let ClothState { particles, topology, origin, settings, effort, work, tethers, .. } = state;
-        let Work {
+        let ClothState { particles, topology, origin, .. } = state;
+        let StepInput {
             pin_motions,
             body_attachments,
             attached_pins,
@@ -157,13 +156,13 @@ impl<'a> Parts<'a> {
             winds: felt,
             jump,
             ..
-        } = work;
+        } = &mut *cloth.input;
         surroundings.obstacles.around(*origin, settings.collision_mask, *jump, near, owners);
         surroundings.winds.around(*origin, felt);
         let ctx = StepContext {
             dt,
             method: settings.solver.into(),
-            effort,
+            effort: policy,
             max_substeps: settings.max_substeps,
             material,
             gravity: (gravity * settings.gravity_scale).into(),
@@ -172,7 +171,7 @@ impl<'a> Parts<'a> {
             attached_pins,
             grabs,
             max_velocity: settings.max_velocity,
-            tethers: settings.tether_slack.map(|_| &*tethers),
+            tethers: settings.tether_slack.map(|_| cloth.attachments.as_tethers()),
             tether_slack: settings.tether_slack.unwrap_or_default(),
             margin,
             max_depenetration_velocity: settings.max_depenetration_velocity,
@@ -191,44 +190,47 @@ impl<'a> Parts<'a> {
 }
 
 /// Takes note of what a step has done to a cloth.
-fn end_step(state: &mut ClothState, report: Option<StepReport>) {
-    state.report = report;
+fn end_step(state: &mut ClothState, report: &mut ClothReport, input: &mut StepInput, latest: Option<StepReport>) {
+    report.latest = latest;
     state.particles.force.fill(Vec3A::ZERO);
     let was_still = core::mem::replace(&mut state.is_still, state.particles.position == state.step_start);
     // The first step that moves nothing counts: what is drawn still comes to rest with it.
     if !(was_still && state.is_still) {
         state.steps += 1;
     }
-    state.is_taken_back = !state.particles.is_finite();
-    if state.is_taken_back {
+    report.is_taken_back = !state.particles.is_finite();
+    if report.is_taken_back {
         state.particles.position.clone_from(&state.step_start);
         state.particles.velocity.fill(Vec3A::ZERO);
-        state.work.given.clear();
+        input.pushes.clear();
     }
 }
 
 /// Tells of what went wrong in a step.
-pub(crate) fn report_steps(mut commands: Commands, mut cloths: Query<(Entity, &ClothStatus, &mut ClothState)>) {
-    for (entity, status, mut state) in &mut cloths {
+pub(crate) fn report_steps(
+    mut commands: Commands,
+    mut cloths: Query<(Entity, &ClothStatus, &ClothReport, &InForce, &mut Warned)>,
+) {
+    for (entity, status, report, in_force, mut warned) in &mut cloths {
         if *status != ClothStatus::Ready {
             continue;
         }
-        if state.is_taken_back {
+        if report.is_taken_back {
             commands.trigger(ClothReset { entity, cause: ResetCause::NotFinite });
-            if !state.said.not_finite {
-                state.said.not_finite = true;
+            if !warned.not_finite {
+                warned.not_finite = true;
                 warn!(
                     "cloth {entity} left the finite numbers and was put back to its last finite pose: look for huge \
                      forces, transforms or stiffness with too few substeps"
                 );
             }
         }
-        if let Some(report) = state.report
+        if let Some(report) = report.latest
             && report.stiffness_scale < 1.0
-            && state.settings.solver == ClothSolver::Explicit
-            && !state.said.softened
+            && in_force.settings.solver == ClothSolver::Explicit
+            && !warned.softened
         {
-            state.said.softened = true;
+            warned.softened = true;
             warn!(
                 "cloth {entity} is too stiff for {} substeps of the explicit solver: it runs with {:.1} % of its \
                  stiffness and damping; raise Cloth::max_substeps, lower the stiffness or use ClothSolver::Strands",

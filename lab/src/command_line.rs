@@ -116,8 +116,8 @@ pub fn main() -> ExitCode {
 /// Prints a line for each measurement as soon as it is there.
 fn run(Cli { sweep, experiment }: Cli) -> io::Result<()> {
     match experiment {
-        _ if sweep => sweep::run(),
-        Some(Experiment::Sizes { n }) => sizes::run(&n),
+        _ if sweep => sweep::run(measure),
+        Some(Experiment::Sizes { n }) => sizes::run(&n, measure),
         Some(Experiment::Laboratory { report: Some(document), .. }) => report::write(&document),
         Some(Experiment::Laboratory { names, brief, report: None }) => {
             run_laboratory(&names, brief);
@@ -152,7 +152,7 @@ fn run_laboratory(names: &[String], brief: bool) {
 }
 
 /// Measures what `arguments` ask for on a command line of the lab.
-pub fn measure(arguments: &str) -> io::Result<Value> {
+fn measure(arguments: &str) -> io::Result<Value> {
     let words = ["lab"].into_iter().chain(arguments.split(' '));
     let experiment = Cli::try_parse_from(words).map_err(io::Error::other)?.experiment;
     experiment.ok_or_else(|| io::Error::other("there is nothing to measure"))?.measure()

@@ -2,6 +2,7 @@
 
 use std::{fs, io, path::Path, time::Instant};
 
+use bevy::tasks::{TaskPool, TaskPoolBuilder};
 use cpu_time::ThreadTime;
 use serde_json::{Value, json};
 
@@ -10,8 +11,10 @@ use super::{
     options::{Options, Solver},
     oracle::{self, Oracle},
     scene::{Cloth, FRAME, Look, Scene},
-    threads,
 };
+
+/// Measures what some arguments on the lab's command line ask for.
+pub type Measure = fn(&str) -> io::Result<Value>;
 
 /// Frames at the end that the strain is averaged over.
 const LAST: usize = 60;
@@ -20,6 +23,11 @@ const LAST: usize = 60;
 struct Frame {
     microseconds: f64,
     look: Look,
+}
+
+/// A pool that makes `threads` with the one that asks it for work.
+pub fn pool(threads: u32) -> Option<TaskPool> {
+    (threads > 1).then(|| TaskPoolBuilder::new().num_threads(threads as usize - 1).build())
 }
 
 /// Runs `scene` and returns its line. With an `oracle` it also says how far the cloth is from it after 0.5 s, and how
@@ -31,7 +39,7 @@ pub fn run(
     mut scene: Scene,
     oracle: Option<&Oracle>,
 ) -> io::Result<Value> {
-    let pool = threads::pool(options.threads);
+    let pool = pool(options.threads);
     let mut substeps = 0;
     let mut frames = Vec::new();
     let mut distance = None;

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use crate::command_line::measure;
+use crate::measure::Measure;
 
 /// Particles along each side.
 pub const ALL: [u32; 6] = [16, 32, 64, 128, 256, 512];
@@ -20,7 +20,7 @@ const FOUND: [(u32, &str); 6] = [
 
 /// Prints what a cloth of each of these sizes costs and how far it is stretched, by the default dial and as was found,
 /// on one thread and on two.
-pub fn run(sizes: &[u32]) -> io::Result<()> {
+pub fn run(sizes: &[u32], measure: Measure) -> io::Result<()> {
     for &n in sizes {
         let found = FOUND.iter().find(|&&(up_to, _)| n <= up_to).map(|&(_, settings)| settings);
         for settings in ["--max-strain 0.01"].into_iter().chain(found) {

@@ -4,7 +4,7 @@ use std::io;
 
 use serde_json::{Value, json};
 
-use crate::command_line::measure;
+use crate::measure::Measure;
 
 /// How often everything with a limit on its time is run, by turns.
 const ROUNDS: usize = 5;
@@ -133,7 +133,7 @@ impl Case {
     }
 
     /// Runs it once.
-    fn measure(&self) -> io::Result<Run> {
+    fn measure(&self, measure: Measure) -> io::Result<Run> {
         let mut own = measure(self.command)?;
         let other = self.against.map(measure).transpose()?;
         if let Some(other) = &other {
@@ -195,12 +195,12 @@ fn number(line: &Value, what: &str) -> f64 {
 }
 
 /// Runs all cases by turns and prints a line for each.
-pub fn run() -> io::Result<()> {
+pub fn run(measure: Measure) -> io::Result<()> {
     let mut runs: Vec<Vec<Run>> = CASES.iter().map(|_| Vec::new()).collect();
     for round in 0..ROUNDS {
         for (case, runs) in CASES.iter().zip(&mut runs) {
             if round == 0 || case.varies() {
-                runs.push(case.measure()?);
+                runs.push(case.measure(measure)?);
             }
         }
     }

@@ -2,7 +2,6 @@
 
 use std::{io, time::Instant};
 
-use bevy::tasks::{TaskPool, TaskPoolBuilder};
 use serde_json::{Value, json};
 
 use super::{
@@ -12,15 +11,11 @@ use super::{
     options::{Options, PinnedPart},
 };
 
-/// A pool that makes `threads` with the one that asks it for work.
-pub fn pool(threads: u32) -> Option<TaskPool> {
-    (threads > 1).then(|| TaskPoolBuilder::new().num_threads(threads as usize - 1).build())
-}
-
 /// Runs the hanging cloth in three ways by turns: on one thread, shared by several, and as many cloths as threads side by
 /// side, each on its own. Wall clock.
 pub fn compare(options: &Options) -> io::Result<Value> {
-    let pool = pool(options.threads).ok_or_else(|| io::Error::other("--threads has to be 2 or more to be compared"))?;
+    let pool = measure::pool(options.threads)
+        .ok_or_else(|| io::Error::other("--threads has to be 2 or more to be compared"))?;
     let cloth = || hang(options, &MeshSource::Grid, PinnedPart::Corners);
     let (mut alone, mut shared) = (cloth()?, cloth()?);
     let mut many = (0..options.threads).map(|_| cloth()).collect::<io::Result<Vec<_>>>()?;

@@ -58,6 +58,21 @@ pub fn strain(particles: &Particles, topology: &Topology) -> Strain {
     strain
 }
 
+/// Unit normals of particles at `position` (m): the sums of their triangles' normals, weighted by area. Zero for a particle
+/// whose triangles have no area.
+pub fn normals(triangles: &[[u32; 3]], position: &[Vec3A]) -> Vec<Vec3A> {
+    let mut normals = vec![Vec3A::ZERO; position.len()];
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|i| position[i as usize]);
+        let doubled_area = (b - a).cross(c - a);
+        for &particle in triangle {
+            normals[particle as usize] += doubled_area;
+        }
+    }
+    normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+    normals
+}
+
 /// Measures the energy of a cloth under `gravity`, m/s².
 pub fn energy(particles: &Particles, topology: &Topology, material: &Material, gravity: Vec3A) -> Energy {
     let mut energy = Energy::default();

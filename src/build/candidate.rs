@@ -10,26 +10,22 @@ use bevy::{
 };
 
 use super::{
-    plan::{PendingBuild, Plan, PlanCache, TetherKey, is_large},
+    plan::{Plan, PlanCache, is_large},
     system::MeshNews,
 };
 use crate::{
-    anchor,
-    cloth::{Cloth, ClothFailed, ClothReady, ClothReset, ClothStatus, ResetCause},
-    draw::{
-        binding::Binding,
-        mesh::{ClothMesh, Drawn},
-        skin::{Lost, copy_without_skin},
-    },
+    attach,
+    cloth::{Cloth, InForce, margin, resolution},
+    draw::{Binding, ClothMesh, Drawn, Lost, copy_without_skin},
     error::ClothError,
-    fabric::{ClothSprings, Fabric, resolution},
-    margin, origin,
+    fabric::{ClothSprings, Fabric},
+    frame::{Jump, Poses, is_invertible},
     pins::{PinTarget, Pins, targets_by_particle},
-    pose::{Poses, is_invertible},
-    rest_scale::RestScale,
     solver::{Material, Particles, Tethers},
-    state::{ClothState, Requests, Warned},
-    teleport::Jump,
+    state::{
+        self, BuildKey, ClothAttachments, ClothFailed, ClothGrabs, ClothReady, ClothReport, ClothReset, ClothState,
+        ClothStatus, PendingBuild, Requests, ResetCause, RestScale, StepInput, TetherKey, Warned, width_at_rest,
+    },
 };
 
 /// All that building a cloth looks at.
@@ -45,6 +41,14 @@ pub(crate) struct Candidate {
     transform: Ref<'static, GlobalTransform>,
     status: &'static mut ClothStatus,
     state: &'static mut ClothState,
+    attachments: &'static mut ClothAttachments,
+    grabs: &'static mut ClothGrabs,
+    report: &'static mut ClothReport,
+    in_force: &'static mut InForce,
+    input: &'static mut StepInput,
+    pending: &'static mut PendingBuild,
+    requests: &'static mut Requests,
+    warned: &'static mut Warned,
     pub own_mesh: Option<&'static ClothMesh>,
 }
 
@@ -58,6 +62,8 @@ pub(super) enum Cause {
 /// A cloth that is ready to take its place.
 pub(super) struct Built {
     state: ClothState,
+    attachments: ClothAttachments,
+    input: StepInput,
     binding: Arc<Binding>,
     mesh: Mesh,
     positions: Vec<[f32; 3]>,
@@ -73,7 +79,7 @@ impl CandidateReadOnlyItem<'_, '_> {
 impl CandidateItem<'_, '_> {
     /// Why the cloth has to be built now, if it has to.
     pub(super) fn cause(&self, source: AssetId<Mesh>, news: &MeshNews) -> Option<Cause> {
-        let changed = news.changed.contains(&source) || self.state.awaited.is_some();
+        let changed = news.changed.contains(&source) || self.pending.0.is_some();
         let added = news.added.contains(&source);
         let touched = self.cloth.is_changed()
             || self.fabric.is_changed()
@@ -81,7 +87,7 @@ impl CandidateItem<'_, '_> {
             || self.pins.is_changed()
             || self.transform.is_changed()
             || self.mesh.is_changed();
-        let reset = self.state.requests.reset;
+        let reset = self.requests.reset;
         match &*self.status {
             ClothStatus::Waiting | ClothStatus::Building => Some(Cause::First),
             ClothStatus::Failed(_) => (touched || changed || added || reset).then_some(Cause::First),
@@ -125,9 +131,9 @@ impl CandidateItem<'_, '_> {
             .ok()
             .filter(is_invertible)
             .ok_or(ClothError::FlatTransform)?;
-        let awaited = self.awaited(pose.matrix3);
+        let pending = self.pending(pose.matrix3);
         // Settings count as they are when all is done.
-        if cache.is_working_on(id, &awaited) {
+        if cache.is_working_on(id, &pending) {
             return Ok(None);
         }
         self.cloth.validate()?;
@@ -136,38 +142,45 @@ impl CandidateItem<'_, '_> {
         if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
             return Err(ClothError::NotInMainWorld);
         }
-        let Some(plan) = cache.plan(id, mesh, awaited.to_world) else { return Ok(None) };
+        let Some(plan) = cache.plan(id, mesh, pending.to_world) else { return Ok(None) };
         let plan = plan?;
         let targets = self.targets(mesh, &plan)?;
-        let to_world = awaited.to_world;
-        let mut tied = None;
+        let to_world = pending.to_world;
+        let mut tethered = None;
         if is_large(mesh) {
-            tied = self.tied(awaited, &plan, &targets, cache);
-            if tied.is_none() {
+            tethered = self.tethers(pending, &plan, &targets, cache);
+            if tethered.is_none() {
                 return Ok(None);
             }
         }
-        let mut state = self.state(&plan, to_world, pose, material);
-        anchor::hold(&mut state, &targets, self.entity, poses);
-        if let Some((ties, tethers)) = tied {
-            tie(&mut state, &targets, &ties, tethers);
+        let mut state = self.state_at_rest(&plan, to_world, pose, material);
+        let (mut attachments, mut input) = (ClothAttachments::default(), StepInput::default());
+        attach::pins::hold(&mut state, &mut attachments, &mut input, &targets, self.entity, poses);
+        if let Some((key, mut tethers)) = tethered {
+            if key.pins == pinned(&targets) {
+                attachments.tether_build = None;
+            } else {
+                // Its pins have changed meanwhile: tethers to new ones are worked out while it runs.
+                tethers.keep(|pin| targets[pin as usize] != PinTarget::Free);
+            }
+            attachments.set_tethers(&mut state, tethers);
         }
-        let mesh = self.copy_of(mesh, &mut state.said);
-        Ok(Some(Built { state, binding: plan.binding, mesh, positions: plan.positions }))
+        let mesh = self.copy_of(mesh);
+        Ok(Some(Built { state, attachments, input, binding: plan.binding, mesh, positions: plan.positions }))
     }
 
-    /// What the cloth waits for, with `to_world` as its rotation and scale by now.
+    /// What is built of the cloth, with `to_world` as its rotation and scale by now.
     ///
     /// A cloth that turns without an end is made as it stood at first: by the time that it is done, it has turned on.
-    fn awaited(&mut self, to_world: Mat3A) -> PendingBuild {
-        if let Some(awaited) = &self.state.awaited
-            && is_turned(awaited.to_world, to_world)
+    fn pending(&mut self, to_world: Mat3A) -> BuildKey {
+        if let Some(pending) = &self.pending.0
+            && is_turned(pending.to_world, to_world)
         {
-            return awaited.clone();
+            return pending.clone();
         }
-        let awaited = PendingBuild { to_world, ties: None };
-        self.state.awaited = Some(awaited.clone());
-        awaited
+        let pending = BuildKey { to_world, tethers: None };
+        self.pending.0 = Some(pending.clone());
+        pending
     }
 
     fn targets(&self, mesh: &Mesh, plan: &Plan) -> Result<Vec<PinTarget>, ClothError> {
@@ -179,58 +192,55 @@ impl CandidateItem<'_, '_> {
         }
     }
 
-    /// The tethers of a large cloth and what they tie: its pins, as they were when the plan was done. None while they are
-    /// being made.
-    fn tied(
+    /// The tethers of a large cloth to its pins, as these were when the plan was done. None while they are being made.
+    fn tethers(
         &mut self,
-        awaited: PendingBuild,
+        pending: BuildKey,
         plan: &Plan,
         targets: &[PinTarget],
         cache: &mut PlanCache,
     ) -> Option<(TetherKey, Tethers)> {
-        let begun = awaited.ties.filter(|ties| Arc::ptr_eq(&ties.topology, &plan.topology));
-        let ties = begun.unwrap_or_else(|| TetherKey { topology: plan.topology.clone(), pins: pinned(targets) });
-        let tethers = if ties.pins.is_empty() { Some(Tethers::default()) } else { cache.tethers(&ties) };
+        let begun = pending.tethers.filter(|key| Arc::ptr_eq(&key.topology, &plan.topology));
+        let key = begun.unwrap_or_else(|| TetherKey { topology: plan.topology.clone(), pins: pinned(targets) });
+        let tethers = if key.pins.is_empty() { Some(Tethers::default()) } else { cache.tethers(&key) };
         if tethers.is_none() {
-            self.state.awaited = Some(PendingBuild { ties: Some(ties.clone()), ..awaited });
+            self.pending.0 = Some(BuildKey { tethers: Some(key.clone()), ..pending });
         }
-        tethers.map(|tethers| (ties, tethers))
+        tethers.map(|tethers| (key, tethers))
     }
 
     /// The state of the cloth at rest at `pose`, whose plan was made for the rotation and scale `to_world`.
-    fn state(&self, plan: &Plan, to_world: Mat3A, pose: Affine3A, material: Material) -> ClothState {
+    fn state_at_rest(&self, plan: &Plan, to_world: Mat3A, pose: Affine3A, material: Material) -> ClothState {
         let rest: Vec<Vec3A> = plan.topology.rest.iter().copied().map(Vec3A::from).collect();
         let mut state = ClothState {
             step_start: rest.clone(),
             particles: Particles::at_rest(rest, &plan.topology, &material),
             origin: pose.translation.into(),
             particle_of_vertex: plan.binding.particle_of_vertex.clone(),
-            effort: self.cloth.effort(&plan.topology),
-            width: margin::width(&plan.topology.rest, to_world),
+            width: width_at_rest(&plan.topology.rest, to_world),
             topology: plan.topology.clone(),
-            settings: Cloth::clone(&self.cloth),
             material: Some(material),
             rest_scale: RestScale::new(to_world),
             pose: Affine3A { matrix3: to_world, ..pose },
-            said: self.state.said,
             // Goes on counting, so that what is drawn of the new cloth isn't taken for the old one's.
             steps: self.state.steps + 1,
             ..default()
         };
         if let Some(turn) = Jump::between(state.pose, pose).filter(|_| to_world != pose.matrix3) {
-            origin::carry(&mut state, &turn);
+            state::carry(&mut state, &mut ClothAttachments::default(), &mut ClothGrabs::default(), &turn);
             state.pose = pose;
         }
         state
     }
 
     /// The mesh that is drawn. Says once what of the user's it doesn't follow.
-    fn copy_of(&self, mesh: &Mesh, said: &mut Warned) -> Mesh {
+    fn copy_of(&mut self, mesh: &Mesh) -> Mesh {
+        let warned = &mut *self.warned;
         let (copy, Lost { skin, morph_targets }) = copy_without_skin(mesh);
-        if skin && !core::mem::replace(&mut said.skin, true) {
+        if skin && !core::mem::replace(&mut warned.skin, true) {
             warn!("cloth {} is simulated and drawn from its bind pose: its skin isn't followed yet", self.entity);
         }
-        if morph_targets && !core::mem::replace(&mut said.morph_targets, true) {
+        if morph_targets && !core::mem::replace(&mut warned.morph_targets, true) {
             warn!("cloth {} is simulated and drawn without its morph targets: they aren't followed yet", self.entity);
         }
         copy
@@ -257,14 +267,18 @@ impl CandidateItem<'_, '_> {
             }
             None => meshes.add(built.mesh),
         };
-        self.state.release_all();
-        let grabs = core::mem::take(&mut self.state.grabs);
+        self.grabs.release_all(&self.state);
         let reset_from = (cause != Cause::First).then_some(self.state.pose);
-        let requests = Requests { reset_from, ..default() };
-        *self.state = ClothState { grabs, requests, ..built.state };
+        *self.requests = Requests { reset_from, ..default() };
+        *self.in_force = InForce::new(&self.cloth, &built.state);
+        *self.report = ClothReport::default();
+        self.pending.0 = None;
+        *self.state = built.state;
+        *self.attachments = built.attachments;
+        *self.input = built.input;
         *self.status = ClothStatus::Ready;
-        resolution::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &mut self.state);
-        margin::warn_if_too_large(entity, &mut self.state);
+        resolution::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &self.state, &mut self.warned);
+        margin::warn_if_too_large(entity, &self.state, &self.in_force, &mut self.warned);
         if self.mesh.0 != drawn {
             self.mesh.0 = drawn.clone();
         }
@@ -279,8 +293,8 @@ impl CandidateItem<'_, '_> {
 
     /// Says why there is no cloth.
     pub(super) fn reject(&mut self, error: ClothError, commands: &mut Commands) {
-        self.state.requests.reset = false;
-        self.state.awaited = None;
+        self.requests.reset = false;
+        self.pending.0 = None;
         // By its words: an error that carries a NaN doesn't equal itself.
         if matches!(&*self.status, ClothStatus::Failed(known) if known.to_string() == error.to_string()) {
             return;
@@ -289,18 +303,6 @@ impl CandidateItem<'_, '_> {
         *self.status = ClothStatus::Failed(error.clone());
         commands.trigger(ClothFailed { entity: self.entity, error });
     }
-}
-
-/// Gives a cloth the `tethers` that tie `ties`. Where its pins have changed meanwhile, those to new ones are worked out
-/// while it runs.
-fn tie(state: &mut ClothState, targets: &[PinTarget], ties: &TetherKey, mut tethers: Tethers) {
-    state.attached_pins.clear();
-    if ties.pins == pinned(targets) {
-        state.tying = None;
-    } else {
-        tethers.keep(|pin| targets[pin as usize] != PinTarget::Free);
-    }
-    state.tethers = tethers;
 }
 
 /// The particles that are fixed to something.

@@ -10,11 +10,13 @@ use bevy::{
     prelude::*,
 };
 
-use super::{job::Jobs, source_of};
+use super::source_of;
 use crate::{
-    draw::binding::Binding,
+    draw::Binding,
     error::ClothError,
+    mesh_input::Jobs,
     solver::{self, SourceMesh, Tethers, Topology, tethers},
+    state::{BuildKey, TetherKey},
 };
 
 /// Corners of the triangles of a mesh that is built at once, at most. A grid of 70 x 70 vertices has so many and takes
@@ -55,29 +57,6 @@ struct Made {
     plan: Result<Plan, ClothError>,
 }
 
-/// What a cloth waits for whose mesh is large.
-#[derive(Clone, Debug)]
-pub(crate) struct PendingBuild {
-    /// The rotation and scale that its plan is made for.
-    pub to_world: Mat3A,
-    /// What its tethers tie, once it has a plan.
-    pub ties: Option<TetherKey>,
-}
-
-/// What tethers tie.
-#[derive(Clone, Debug)]
-pub(crate) struct TetherKey {
-    pub topology: Arc<Topology>,
-    pub pins: Arc<[u32]>,
-}
-
-impl PartialEq for TetherKey {
-    /// Of the very same topology.
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.topology, &other.topology) && self.pins == other.pins
-    }
-}
-
 impl PlanCache {
     /// Drops what nobody uses or waits for any more and what is made from a mesh that `has_changed`, and looks for what
     /// is done.
@@ -88,9 +67,9 @@ impl PlanCache {
     }
 
     /// Whether anything is being worked on that a cloth waits for. What is done already is kept for it.
-    pub(super) fn is_working_on(&mut self, id: AssetId<Mesh>, awaited: &PendingBuild) -> bool {
-        let plan = self.plans.is_running(&(id, bits(awaited.to_world)));
-        let tethers = awaited.ties.as_ref().is_some_and(|ties| self.tethers.is_running(ties));
+    pub(super) fn is_working_on(&mut self, id: AssetId<Mesh>, pending: &BuildKey) -> bool {
+        let plan = self.plans.is_running(&(id, bits(pending.to_world)));
+        let tethers = pending.tethers.as_ref().is_some_and(|key| self.tethers.is_running(key));
         plan || tethers
     }
 
@@ -118,13 +97,13 @@ impl PlanCache {
         Some(plan.map(|plan| self.known.share(plan)))
     }
 
-    /// The tethers that tie what is to be tied. None while they are being made, as in [`plan`](Self::plan).
-    pub(super) fn tethers(&mut self, ties: &TetherKey) -> Option<Tethers> {
+    /// The tethers to some pins. None while they are being made, as in [`plan`](Self::plan).
+    pub(super) fn tethers(&mut self, key: &TetherKey) -> Option<Tethers> {
         let work = || {
-            let ties = ties.clone();
-            async move { tethers(&ties.topology, &ties.pins) }
+            let key = key.clone();
+            async move { tethers(&key.topology, &key.pins) }
         };
-        self.tethers.get_or_begin(ties.clone(), work).cloned()
+        self.tethers.get_or_begin(key.clone(), work).cloned()
     }
 }
 

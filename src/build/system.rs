@@ -8,11 +8,13 @@ use bevy::{
 
 use super::{candidate::Candidate, plan::PlanCache};
 use crate::{
-    cloth::{Cloth, ClothStatus},
-    draw::mesh::{self, ClothMesh},
+    cloth::{Cloth, InForce},
+    draw::{self, ClothMesh},
     error::ClothError,
-    pose::Poses,
-    state::ClothState,
+    frame::Poses,
+    state::{
+        ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, StepInput, Warned,
+    },
 };
 
 /// Says so where `Cloth` is on an entity that has no mesh, as the root of a loaded scene has none.
@@ -101,7 +103,10 @@ pub(crate) fn on_cloth_removed(
     meshes: Option<ResMut<Assets<Mesh>>>,
 ) {
     if let (Ok(cloth), Some(mut meshes)) = (cloths.get(removed.entity), meshes) {
-        mesh::release(&cloth.drawn, &mut meshes);
+        draw::release(&cloth.drawn, &mut meshes);
     }
-    commands.entity(removed.entity).try_remove::<(ClothMesh, ClothState, ClothStatus)>();
+    commands
+        .entity(removed.entity)
+        .try_remove::<(ClothMesh, ClothState, ClothAttachments, ClothGrabs, ClothReport, ClothStatus)>()
+        .try_remove::<(InForce, PendingBuild, Requests, StepInput, Warned)>();
 }

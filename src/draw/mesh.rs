@@ -9,8 +9,12 @@ use bevy::{
     prelude::*,
 };
 
-use super::{binding::Binding, carrier::Carry, shading};
-use crate::{clock::ClothClock, parallel, pose::is_invertible, solver::build::weld::NO_PARTICLE, state::ClothState};
+use super::{Binding, carry::Carry, shading};
+use crate::{
+    frame::{self, ClothClock, is_invertible},
+    solver::build::weld::NO_PARTICLE,
+    state::{ClothAttachments, ClothState, Requests},
+};
 
 /// The meshes of a cloth: the one that it was made from, and its own copy, which is drawn.
 #[derive(Component, Clone, Debug)]
@@ -48,17 +52,15 @@ pub(crate) struct Drawn {
 
 /// Computes what every cloth looks like at the moment that is drawn.
 pub(crate) fn shape_cloths(
-    mut cloths: Query<(&ClothState, &mut ClothMesh, &GlobalTransform)>,
+    mut cloths: Query<(&ClothState, &ClothAttachments, &Requests, &GlobalTransform, &mut ClothMesh)>,
     poses: Query<&GlobalTransform>,
     clock: ClothClock,
     _main_thread: NonSendMarker,
 ) {
     let now = clock.overstep();
-    parallel::for_each(cloths.iter_mut(), clock.parallel(), |(state, mut mesh, transform)| {
+    frame::for_each(cloths.iter_mut(), clock.parallel(), |(state, attachments, requests, transform, mut mesh)| {
         let ClothMesh { binding, shape, .. } = &mut *mesh;
-        // Until the next step does a teleport, the cloth is drawn as if it had been done.
-        let pose = if state.requests.teleport { state.pose } else { transform.affine() };
-        shape.update(state, binding, pose, &poses, now);
+        shape.update((state, attachments, requests), binding, transform.affine(), &poses, now);
     });
 }
 
@@ -92,16 +94,18 @@ impl Drawn {
     /// of all entities by now.
     fn update(
         &mut self,
-        state: &ClothState,
+        (state, attachments, requests): (&ClothState, &ClothAttachments, &Requests),
         binding: &Binding,
         pose: Affine3A,
         poses: &Query<&GlobalTransform>,
         now: f32,
     ) {
+        // Until the next step does a teleport, the cloth is drawn as if it had been done.
+        let (pose, anchors) = if requests.teleport { (state.pose, &[][..]) } else { (pose, &*attachments.anchors) };
         // Where nothing has moved, each moment of the step looks the same.
         let now = if state.is_still { 1.0 } else { now };
         let key = (state.steps, now, pose);
-        self.next_carry.update(state, now, pose.translation, poses);
+        self.next_carry.update(state.origin.into(), anchors, now, pose.translation, poses);
         let is_known = self.key == Some(key) && self.carry == self.next_carry;
         if state.particles.is_empty() || is_known || !is_invertible(&pose) {
             return;
@@ -112,7 +116,7 @@ impl Drawn {
         let to_local = pose.matrix3.inverse();
         let places = state.step_start.iter().zip(&state.particles.position).map(|(start, &end)| start.lerp(end, now));
         self.particles.clear();
-        match self.carry.weights(state) {
+        match self.carry.weights(attachments) {
             Some(weights) => {
                 let carried = places.enumerate().map(|(i, place)| self.carry.blend(place, weights.of(i)));
                 self.particles.extend(carried.map(|place| to_local * place));

@@ -1,28 +1,8 @@
 //! Normals and tangents of the deformed mesh, in its own space.
 
-use bevy::math::{Mat3A, Vec3, Vec3A, Vec4};
+use bevy::math::{Vec3A, Vec4};
 
 use super::binding::{Binding, Groups, Tangents};
-
-/// World normals of particles, unit vectors, on the side that the mesh's triangles face: the sums of their triangles'
-/// normals, weighted by area. `position` is up to a shift in the world, `to_world` takes the mesh there.
-pub(crate) fn particle_normals(
-    triangles: &[[u32; 3]],
-    position: &[Vec3A],
-    to_world: &Mat3A,
-) -> impl Iterator<Item = Vec3> + use<> {
-    // A mirrored mesh shows its back where its triangles, in the world, seem to face.
-    let side = 1.0_f32.copysign(to_world.determinant());
-    let mut sums = vec![Vec3A::ZERO; position.len()];
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|i| position[i as usize]);
-        let doubled_area = (b - a).cross(c - a);
-        for &particle in triangle {
-            sums[particle as usize] += doubled_area;
-        }
-    }
-    sums.into_iter().map(move |sum| (sum.normalize_or_zero() * side).into())
-}
 
 /// Writes the normal of each group into `normals`: the sum of its triangles' normals, weighted by area.
 pub(super) fn normals(binding: &Binding, groups: &Groups, positions: &[[f32; 3]], normals: &mut Vec<Vec3A>) {

@@ -7,9 +7,8 @@ use bevy::{
 };
 
 use crate::{
-    clock::StepNumber,
+    frame::{ColliderTeleportThreshold, StepNumber, Teleported},
     solver::Body,
-    teleport::{ColliderTeleportThreshold, Teleported},
 };
 
 /// A body, or a collider of its own, as an engine has left it.

@@ -6,38 +6,38 @@ use bevy::{
 };
 
 use crate::{
-    cloth::ClothStatus,
     solver::{BodyDisplacement, BodyImpulse},
-    state::{ClothState, Given},
+    state::{BodyPush, ClothStatus, StepInput},
 };
 
 /// What all cloths have given in the latest step, in a fixed order: that of the colliders, then of the cloths.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Pushes {
-    pub list: Vec<Given>,
+    pub list: Vec<BodyPush>,
     /// The same with the cloth and its number among that cloth's.
-    buffer: Vec<(Given, Entity, usize)>,
+    buffer: Vec<(BodyPush, Entity, usize)>,
 }
 
 /// Takes over what each cloth has given, whichever thread stepped it.
-pub(crate) fn collect_pushes(mut cloths: Query<(Entity, &ClothStatus, &mut ClothState)>, mut pushes: ResMut<Pushes>) {
+pub(crate) fn collect_pushes(mut cloths: Query<(Entity, &ClothStatus, &mut StepInput)>, mut pushes: ResMut<Pushes>) {
     let Pushes { list, buffer } = &mut *pushes;
     buffer.clear();
-    for (cloth, status, mut state) in &mut cloths {
-        let work = &mut state.bypass_change_detection().work;
-        let given = work.given.drain(..).enumerate();
+    for (cloth, status, mut input) in &mut cloths {
+        let pushes = input.bypass_change_detection().pushes.drain(..).enumerate();
         if *status == ClothStatus::Ready {
-            buffer.extend(given.map(|(number, given)| (given, cloth, number)));
+            buffer.extend(pushes.map(|(number, push)| (push, cloth, number)));
         }
     }
-    buffer.sort_unstable_by_key(|&(given, cloth, number)| (given.to, cloth, number));
+    buffer.sort_unstable_by_key(|&(push, cloth, number)| (push.to, cloth, number));
     list.clear();
-    let is_felt = |given: &Given| {
-        let Given { push: BodyImpulse { linear, angular }, stray: BodyDisplacement { shift, turn }, .. } = given;
+    let is_felt = |push: &BodyPush| {
+        let BodyPush {
+            impulse: BodyImpulse { linear, angular }, displacement: BodyDisplacement { shift, turn }, ..
+        } = push;
         let is_finite = linear.is_finite() && angular.is_finite() && shift.is_finite() && turn.is_finite();
         is_finite && (*linear != Vec3A::ZERO || *angular != Vec3A::ZERO)
     };
-    list.extend(buffer.iter().map(|&(given, ..)| given).filter(is_felt));
+    list.extend(buffer.iter().map(|&(push, ..)| push).filter(is_felt));
 }
 
 /// Where a body is that was at `pose`, with its centre of mass at `centre` (m) in its frame, and has strayed.

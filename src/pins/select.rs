@@ -7,8 +7,8 @@ use bevy::{mesh::VertexAttributeValues, prelude::*};
 
 use super::{ClothEdge, PinSelector, PinTarget, Pins};
 use crate::{
-    build::source::read_uvs,
     error::ClothError,
+    mesh_input::read_uvs,
     solver::{Topology, build::weld::NO_PARTICLE},
 };
 

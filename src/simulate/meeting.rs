@@ -1,6 +1,7 @@
 //! Which cloths may touch each other within a step.
 
 use bevy::{
+    ecs::query::QueryData,
     math::{
         Vec3A,
         bounding::{Aabb3d, BoundingVolume, IntersectsVolume},
@@ -9,35 +10,48 @@ use bevy::{
 };
 
 use crate::{
-    cloth::Cloth,
+    cloth::{Cloth, InForce},
     solver::{MAX_TIME_STEP, SelfCollision},
-    state::ClothState,
+    state::{ClothAttachments, ClothReport, ClothState, StepInput},
 };
 
-/// A cloth that is ready, by its entity.
-pub(super) type Ready<'a> = (Entity, Mut<'a, ClothState>);
+/// All of a cloth that a step reads and writes.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct Stepped {
+    pub entity: Entity,
+    pub state: &'static mut ClothState,
+    pub attachments: &'static ClothAttachments,
+    pub in_force: &'static InForce,
+    pub input: &'static mut StepInput,
+    pub report: &'static mut ClothReport,
+}
 
 /// By how much particles may gain on each other within a step beyond their speed, m.
 const GAINED: f32 = 0.02;
 
 /// Puts cloths that may touch each other within `dt` seconds together, in the order of their entities.
-pub(super) fn group(ready: Vec<Ready>, dt: f32) -> Vec<Vec<Ready>> {
-    let (mut meeting, alone): (Vec<Ready>, Vec<Ready>) =
-        ready.into_iter().partition(|(_, state)| state.settings.self_collision != SelfCollision::Off);
-    meeting.sort_unstable_by_key(|&(entity, _)| entity);
-    let boxes: Vec<Option<Aabb3d>> = meeting.iter().map(|(_, state)| reached(state, dt)).collect();
+pub(super) fn group<'w, 's>(ready: Vec<SteppedItem<'w, 's>>, dt: f32) -> Vec<Vec<SteppedItem<'w, 's>>> {
+    let (mut meeting, alone): (Vec<_>, Vec<_>) =
+        ready.into_iter().partition(|cloth| cloth.in_force.settings.self_collision != SelfCollision::Off);
+    meeting.sort_unstable_by_key(|cloth| cloth.entity);
+    let boxes: Vec<Option<Aabb3d>> =
+        meeting.iter().map(|cloth| reached(&cloth.state, &cloth.in_force.settings, dt)).collect();
     // The first of each cloth's group.
     let mut leader: Vec<usize> = (0..meeting.len()).collect();
     for i in 0..meeting.len() {
         for j in 0..i {
             let (Some(one), Some(other)) = (&boxes[i], &boxes[j]) else { continue };
-            if leader[i] != leader[j] && may_meet(&meeting[i].1, &meeting[j].1) && one.intersects(other) {
+            if leader[i] != leader[j]
+                && may_meet(&meeting[i].in_force.settings, &meeting[j].in_force.settings)
+                && one.intersects(other)
+            {
                 let (first, last) = (leader[i].min(leader[j]), leader[i].max(leader[j]));
                 leader.iter_mut().filter(|leader| **leader == last).for_each(|leader| *leader = first);
             }
         }
     }
-    let mut groups: Vec<Vec<Ready>> = meeting.iter().map(|_| Vec::new()).collect();
+    let mut groups: Vec<Vec<SteppedItem>> = meeting.iter().map(|_| Vec::new()).collect();
     for (cloth, leader) in meeting.into_iter().zip(leader) {
         groups[leader].push(cloth);
     }
@@ -47,14 +61,13 @@ pub(super) fn group(ready: Vec<Ready>, dt: f32) -> Vec<Vec<Ready>> {
 }
 
 /// Whether each of two cloths is in the other's mask.
-fn may_meet(one: &ClothState, other: &ClothState) -> bool {
-    let meets =
-        |one: &ClothState, other: &ClothState| one.settings.collision_mask & other.settings.collision_layers != 0;
+fn may_meet(one: &Cloth, other: &Cloth) -> bool {
+    let meets = |one: &Cloth, other: &Cloth| one.collision_mask & other.collision_layers != 0;
     meets(one, other) && meets(other, one)
 }
 
 /// Box around what a cloth may reach within a step, in the world; none of a cloth that is nowhere.
-fn reached(state: &ClothState, dt: f32) -> Option<Aabb3d> {
+fn reached(state: &ClothState, settings: &Cloth, dt: f32) -> Option<Aabb3d> {
     let (particles, dt) = (&state.particles, dt.min(MAX_TIME_STEP));
     let origin = Vec3A::from(state.origin);
     let ends = |(&place, &velocity): (&Vec3A, &Vec3A)| [origin + place, origin + place + velocity * dt];
@@ -63,7 +76,7 @@ fn reached(state: &ClothState, dt: f32) -> Option<Aabb3d> {
     let (low, high) = places.fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
     let bounds = Aabb3d { min: low, max: high };
     // Far from the world's origin, places are rounded.
-    let Cloth { self_collision, self_distance, .. } = state.settings;
+    let Cloth { self_collision, self_distance, .. } = *settings;
     let distance = self_collision.distance_on(&state.topology, self_distance);
     let margin = distance + GAINED + 1e-6 * origin.abs().max_element();
     (low.is_finite() && high.is_finite()).then(|| bounds.grow(Vec3A::splat(margin)))

@@ -10,7 +10,10 @@ use bevy::{
     prelude::*,
     time::TimeUpdateStrategy,
 };
-use bevy_drape::prelude::*;
+use bevy_drape::{
+    prelude::*,
+    solver::{StepReport, Tether},
+};
 
 /// Duration of a step of [`headless`] apps, s.
 pub const STEP: f32 = 1.0 / 60.0;
@@ -94,6 +97,35 @@ pub fn get_mut<C: Component<Mutability = Mutable>>(app: &mut App, entity: Entity
 
 pub fn state(app: &App, entity: Entity) -> &ClothState {
     get(app, entity)
+}
+
+pub fn report(app: &App, entity: Entity) -> StepReport {
+    get::<ClothReport>(app, entity).latest().expect("the cloth has been stepped")
+}
+
+pub fn tethers(app: &App, entity: Entity) -> Vec<Tether> {
+    get::<ClothAttachments>(app, entity).tethers().collect()
+}
+
+/// Takes hold of a point of a cloth.
+pub fn take_hold(app: &mut App, cloth: Entity, point: ClothPoint, grip: ClothGrip) -> Option<GrabId> {
+    let mut cloths = app.world_mut().query::<(&ClothState, &mut ClothGrabs)>();
+    let (state, mut grabs) = cloths.get_mut(app.world_mut(), cloth).expect("a cloth");
+    grabs.grab(state, point, grip)
+}
+
+/// Leads a held point of a cloth. False where the hold has ended.
+pub fn lead(app: &mut App, cloth: Entity, grab: GrabId, target: Vec3) -> bool {
+    get_mut::<ClothGrabs>(app, cloth).move_grab(grab, target)
+}
+
+/// Lets go of a point of a cloth. False where the hold has ended.
+pub fn let_go(app: &mut App, cloth: Entity, grab: GrabId) -> bool {
+    get_mut::<ClothGrabs>(app, cloth).release(grab)
+}
+
+pub fn is_held(app: &App, cloth: Entity) -> bool {
+    !get::<ClothGrabs>(app, cloth).is_empty()
 }
 
 pub fn positions(app: &App, entity: Entity) -> Vec<Vec3> {

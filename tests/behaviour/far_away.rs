@@ -19,7 +19,7 @@ fn after_two_seconds(at: Vec3) -> (Vec<Vec3>, u32) {
     let mut contacts = 0;
     for _ in 0..120 {
         run(&mut app, 1);
-        contacts += state(&app, cloth).report().unwrap().contacts;
+        contacts += report(&app, cloth).contacts;
     }
     (points(drawn(&app, cloth)), contacts)
 }

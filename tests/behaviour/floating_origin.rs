@@ -24,12 +24,11 @@ fn busy_world() -> (App, [Entity; 2]) {
     };
     app.add_systems(FixedUpdate, roll);
     run(&mut app, 20);
-    let mut state = get_mut::<ClothState>(&mut app, cloth);
     let point = ClothPoint { triangle: 150, weights: Vec3::X };
-    let hand = state.grab(point, ClothGrip::default()).unwrap();
-    let at = state.point_position(point).unwrap();
+    let hand = take_hold(&mut app, cloth, point, ClothGrip::default()).unwrap();
+    let at = state(&app, cloth).point_position(point).unwrap();
     // To a place that has no digits to lose.
-    state.move_grab(hand, (at * 64.0).round() / 64.0 + Vec3::new(0.0, 0.25, 0.0));
+    lead(&mut app, cloth, hand, (at * 64.0).round() / 64.0 + Vec3::new(0.0, 0.25, 0.0));
     run(&mut app, 5);
     (app, [cloth, free])
 }

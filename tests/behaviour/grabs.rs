@@ -30,9 +30,8 @@ fn curtain(app: &mut App, more: impl Bundle) -> Entity {
 
 /// Takes hold of the point of a cloth that is nearest to `place`.
 fn grab(app: &mut App, cloth: Entity, place: Vec3) -> (GrabId, ClothPoint) {
-    let mut state = get_mut::<ClothState>(app, cloth);
-    let point = state.nearest_point(place).expect("a cloth");
-    (state.grab(point, ClothGrip::default()).expect("a point of the cloth"), point)
+    let point = state(app, cloth).nearest_point(place).expect("a cloth");
+    (take_hold(app, cloth, point, ClothGrip::default()).expect("a point of the cloth"), point)
 }
 
 #[test]
@@ -54,15 +53,14 @@ fn a_grabbed_point_follows_the_hand_and_is_let_go() {
     let cloth = curtain(&mut app, ());
     let (hand, point) = grab(&mut app, cloth, Vec3::new(0.1, -0.3, 0.0));
     let target = Vec3::new(0.2, 0.0, 0.5);
-    assert!(get_mut::<ClothState>(&mut app, cloth).move_grab(hand, target));
+    assert!(lead(&mut app, cloth, hand, target));
     run(&mut app, 120);
     assert_close(state(&app, cloth).point_position(point).unwrap(), target, 0.005);
-    assert!(state(&app, cloth).is_grabbed());
-    let mut state_now = get_mut::<ClothState>(&mut app, cloth);
-    assert!(state_now.release(hand));
-    assert!(!state_now.release(hand) && !state_now.move_grab(hand, Vec3::ZERO), "the hold has ended");
+    assert!(is_held(&app, cloth));
+    assert!(let_go(&mut app, cloth, hand));
+    assert!(!let_go(&mut app, cloth, hand) && !lead(&mut app, cloth, hand, Vec3::ZERO), "the hold has ended");
     run(&mut app, 240);
-    assert!(!state(&app, cloth).is_grabbed());
+    assert!(!is_held(&app, cloth));
     assert!(state(&app, cloth).point_position(point).unwrap().y < -0.2, "it hangs again");
 }
 
@@ -84,7 +82,7 @@ fn what_is_pinned_stays_pinned_in_a_hand() {
     let cloth = curtain(&mut app, ());
     let before = place(&app, cloth, 0);
     let (hand, _) = grab(&mut app, cloth, before);
-    get_mut::<ClothState>(&mut app, cloth).move_grab(hand, Vec3::splat(3.0));
+    lead(&mut app, cloth, hand, Vec3::splat(3.0));
     run(&mut app, 30);
     assert_eq!(place(&app, cloth, 0), before);
 }
@@ -95,7 +93,7 @@ fn grabbing_and_letting_go_are_told_with_place_and_triangle() {
     let cloth = curtain(&mut app, Transform::from_xyz(0.0, 0.0, 2.0));
     let (hand, point) = grab(&mut app, cloth, Vec3::new(0.0, 0.0, 2.0));
     run(&mut app, 2);
-    get_mut::<ClothState>(&mut app, cloth).release(hand);
+    let_go(&mut app, cloth, hand);
     run(&mut app, 2);
     let told = app.world().resource::<Told>();
     let [grabbed] = told.grabbed[..] else { panic!("told once, not {}", told.grabbed.len()) };
@@ -114,7 +112,7 @@ fn grabs_are_told_while_time_stands_still() {
     let (hand, _) = grab(&mut app, cloth, Vec3::ZERO);
     app.update();
     assert_eq!(app.world().resource::<Told>().grabbed.len(), 1);
-    get_mut::<ClothState>(&mut app, cloth).release(hand);
+    let_go(&mut app, cloth, hand);
     app.update();
     assert_eq!(app.world().resource::<Told>().released.len(), 1);
 }
@@ -138,9 +136,9 @@ fn reset_rebuild_and_teleport_end_all_holds() {
         app.update();
         act(&mut app, cloth);
         run(&mut app, 3);
-        assert!(!state(&app, cloth).is_grabbed(), "{name}");
+        assert!(!is_held(&app, cloth), "{name}");
         assert_eq!(app.world().resource::<Told>().released.len(), 1, "{name}");
-        assert!(!get_mut::<ClothState>(&mut app, cloth).move_grab(hand, Vec3::ZERO), "{name}");
+        assert!(!lead(&mut app, cloth, hand, Vec3::ZERO), "{name}");
         let (next, _) = grab(&mut app, cloth, Vec3::ZERO);
         assert_ne!(hand, next, "{name}: an old hold isn't taken for a new one");
     }
@@ -166,11 +164,10 @@ fn odd_grips_and_targets_do_no_harm() {
         let mut app = headless();
         let cloth = curtain(&mut app, ());
         let grip = ClothGrip { stiffness: value, damping: value, max_force: value, max_speed: value, mass: value };
-        let mut state_now = get_mut::<ClothState>(&mut app, cloth);
-        let point = state_now.nearest_point(Vec3::ZERO).unwrap();
-        let hand = state_now.grab(point, grip).unwrap();
-        assert!(!state_now.move_grab(hand, Vec3::splat(value)) || value.is_finite());
-        state_now.move_grab(hand, Vec3::Z);
+        let point = state(&app, cloth).nearest_point(Vec3::ZERO).unwrap();
+        let hand = take_hold(&mut app, cloth, point, grip).unwrap();
+        assert!(!lead(&mut app, cloth, hand, Vec3::splat(value)) || value.is_finite());
+        lead(&mut app, cloth, hand, Vec3::Z);
         run(&mut app, 30);
         assert!(positions(&app, cloth).iter().all(|p| p.is_finite() && p.length() < 10.0), "{value}");
         assert_eq!(app.world().resource::<Heard>().reset, [], "{value}");
@@ -183,7 +180,7 @@ fn weights_that_are_no_point_of_the_triangle_are_refused() {
     let cloth = curtain(&mut app, ());
     for weights in [Vec3::NAN, Vec3::ZERO, Vec3::splat(5.0), Vec3::new(-1.0, 1.0, 1.0)] {
         let point = ClothPoint { triangle: 0, weights };
-        assert_eq!(get_mut::<ClothState>(&mut app, cloth).grab(point, ClothGrip::default()), None, "{weights}");
+        assert_eq!(take_hold(&mut app, cloth, point, ClothGrip::default()), None, "{weights}");
     }
 }
 
@@ -192,12 +189,11 @@ fn a_hand_leads_a_cloth_far_from_where_it_was() {
     let mut app = headless();
     let cloth = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 8, 8), undamped());
     app.update();
-    let mut state_now = get_mut::<ClothState>(&mut app, cloth);
-    let point = state_now.nearest_point(Vec3::ZERO).unwrap();
-    let hand = state_now.grab(point, ClothGrip { max_speed: 60.0, ..default() }).unwrap();
+    let point = state(&app, cloth).nearest_point(Vec3::ZERO).unwrap();
+    let hand = take_hold(&mut app, cloth, point, ClothGrip { max_speed: 60.0, ..default() }).unwrap();
     // Beyond the distance at which the cloth's origin follows it.
     for frame in 0..=600 {
-        get_mut::<ClothState>(&mut app, cloth).move_grab(hand, Vec3::X * 0.8 * frame as f32);
+        lead(&mut app, cloth, hand, Vec3::X * 0.8 * frame as f32);
         app.update();
     }
     run(&mut app, 300);

@@ -22,7 +22,7 @@ fn a_free_cloth_falls_like_a_stone() {
         let cloth = spawn_cloth(&mut app, ClothGrid::new(0.4, 0.4, 5, 5), more);
         run(&mut app, FRAMES);
         // Symplectic Euler in n substeps h: g h² n (n + 1) / 2, a little more than g t² / 2.
-        let substeps = state(&app, cloth).report().unwrap().substeps as f32;
+        let substeps = report(&app, cloth).substeps as f32;
         let n = FRAMES as f32 * substeps;
         let h = STEP / substeps;
         let expected = Vec3::NEG_Y * 9.81 * h * h * n * (n + 1.0) / 2.0;

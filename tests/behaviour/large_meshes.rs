@@ -152,7 +152,7 @@ fn a_large_cloth_has_its_tethers_from_the_first_step_on() {
     let (cloth, _) = begin(&mut app, Pins::edge_corners(ClothEdge::Top));
     finish(&mut app, cloth);
     let expected = tethers(&topology(&app, cloth), &[0, SIDE - 1]);
-    assert!(state(&app, cloth).tethers().eq(expected.iter()));
+    assert!(get::<ClothAttachments>(&app, cloth).tethers().eq(expected.iter()));
 }
 
 #[test]
@@ -167,12 +167,12 @@ fn pins_that_change_while_tethers_are_made_get_theirs_in_time() {
     app.world_mut().resource_mut::<Time<Virtual>>().pause();
     finish(&mut app, cloth);
     assert_eq!(pinned(&app, cloth), [0, 7]);
-    assert!(state(&app, cloth).tethers().all(|tether| tether.pin == 0));
-    assert!(state(&app, cloth).tethers().count() > 0);
+    assert!(get::<ClothAttachments>(&app, cloth).tethers().all(|tether| tether.pin == 0));
+    assert!(get::<ClothAttachments>(&app, cloth).tethers().count() > 0);
     app.world_mut().resource_mut::<Time<Virtual>>().unpause();
     run(&mut app, 5);
     let expected = tethers(&topology(&app, cloth), &[0, 7]);
-    assert!(state(&app, cloth).tethers().eq(expected.iter()));
+    assert!(get::<ClothAttachments>(&app, cloth).tethers().eq(expected.iter()));
 }
 
 #[test]

@@ -112,13 +112,8 @@ fn touch(app: &mut App, id: u64, phase: TouchPhase, position: Vec2) {
 /// Where the only hold of a cloth is, and where its pointer leads it.
 #[track_caller]
 fn held(app: &App, cloth: Entity) -> (Vec3, Vec3) {
-    let state = state(app, cloth);
-    let (_, point, target) = state.grabs().next().expect("the cloth is held");
-    (state.point_position(point).expect("a point of the cloth"), target)
-}
-
-fn is_held(app: &App, cloth: Entity) -> bool {
-    state(app, cloth).is_grabbed()
+    let (_, point, target) = get::<ClothGrabs>(app, cloth).iter().next().expect("the cloth is held");
+    (state(app, cloth).point_position(point).expect("a point of the cloth"), target)
 }
 
 #[test]
@@ -242,21 +237,21 @@ fn two_fingers_hold_two_places() {
         let at = on_screen(&mut app, place);
         touch(&mut app, id, TouchPhase::Started, at);
     }
-    assert_eq!(state(&app, cloth).grabs().len(), 2);
+    assert_eq!(get::<ClothGrabs>(&app, cloth).len(), 2);
     let up = places.map(|place| place + Vec3::new(0.0, 0.2, 0.0));
     for (id, place) in (1..).zip(up) {
         let at = on_screen(&mut app, place);
         touch(&mut app, id, TouchPhase::Moved, at);
     }
     run(&mut app, 90);
-    for (_, point, target) in state(&app, cloth).grabs() {
+    for (_, point, target) in get::<ClothGrabs>(&app, cloth).iter() {
         let point = state(&app, cloth).point_position(point).unwrap();
         assert_close(point, target, 0.02);
         assert!(up.iter().any(|place| place.distance(point) < 0.05), "{point}");
     }
     let at = on_screen(&mut app, up[0]);
     touch(&mut app, 1, TouchPhase::Ended, at);
-    assert_eq!(state(&app, cloth).grabs().len(), 1);
+    assert_eq!(get::<ClothGrabs>(&app, cloth).len(), 1);
     touch(&mut app, 2, TouchPhase::Canceled, at);
     assert!(!is_held(&app, cloth));
 }
@@ -270,7 +265,7 @@ fn a_second_finger_beside_the_cloth_pinches_it_nearer_and_farther() {
     let before = 5.0 - held(&app, cloth).1.z;
     touch(&mut app, 2, TouchPhase::Started, at + Vec2::X * 200.0);
     touch(&mut app, 2, TouchPhase::Moved, at + Vec2::X * 250.0);
-    assert_eq!(state(&app, cloth).grabs().len(), 1);
+    assert_eq!(get::<ClothGrabs>(&app, cloth).len(), 1);
     let after = 5.0 - held(&app, cloth).1.z;
     assert!((after / before - 200.0 / 250.0).abs() < 0.01, "from {before} m to {after} m");
 }
@@ -451,5 +446,5 @@ fn an_app_may_add_mesh_picking_itself() {
     add_camera(&mut app, Projection::from(PerspectiveProjection::default()), None, 0);
     let cloth = curtain(&mut app);
     press_at(&mut app, Vec3::ZERO);
-    assert_eq!(state(&app, cloth).grabs().len(), 1);
+    assert_eq!(get::<ClothGrabs>(&app, cloth).len(), 1);
 }

@@ -59,14 +59,12 @@ fn a_hand_that_holds_a_pin_throws_nothing() {
             (Cloth { solver, ..default() }, Pins::indices([0, 5])),
         );
         run(&mut app, 30);
-        let mut state = get_mut::<ClothState>(&mut app, cloth);
-        let triangles = state.triangles().to_vec();
+        let triangles = state(&app, cloth).triangles().to_vec();
         let triangle = (0..).zip(&triangles).find(|(_, corners)| corners.contains(&0)).map_or(0, |(number, _)| number);
         let weight = |corner: u32| if corner == 0 { 1.0 } else { 1e-5 };
         let weights = Vec3::from(triangles[triangle as usize].map(weight));
-        let grab = state.grab(ClothPoint { triangle, weights }, ClothGrip::default());
-        let grab = grab.expect("the point is on the triangle");
-        state.move_grab(grab, Vec3::Z * 3.0);
+        let grab = take_hold(&mut app, cloth, ClothPoint { triangle, weights }, ClothGrip::default());
+        lead(&mut app, cloth, grab.expect("the point is on the triangle"), Vec3::Z * 3.0);
         run(&mut app, 60);
         let fastest = fastest(&app, cloth);
         assert!(fastest < 5.0, "{solver:?}: {fastest} m/s");

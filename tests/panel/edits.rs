@@ -185,7 +185,10 @@ fn an_edit_acts_in_the_next_step_and_the_cloth_moves_on() {
     let speed = state.velocity(9).expect("a particle").y;
     assert!(speed < -1.0, "it goes on as it went: {speed}");
     assert!(fallen(&desk) < before);
-    assert_eq!(desk.get::<ClothState>(cloth).report().map(|report| report.substeps), desk.get::<Cloth>(cloth).substeps);
+    assert_eq!(
+        desk.get::<ClothReport>(cloth).latest().map(|report| report.substeps),
+        desk.get::<Cloth>(cloth).substeps
+    );
     desk.frames(10);
     let later = desk.get::<ClothState>(cloth).velocity(9).expect("a particle").y;
     assert!((later - speed).abs() < 0.3, "nothing accelerates it: {speed} to {later}");

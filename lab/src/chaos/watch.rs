@@ -43,7 +43,7 @@ pub fn look(stage: &mut Stage, outcome: &mut Outcome) {
             continue;
         }
         outcome.has_run = true;
-        step += state.step_time().as_secs_f64();
+        step += world.get::<ClothReport>(cloth).map_or(0.0, |report| report.step_time().as_secs_f64());
         particles += state.particle_count();
         if let Some(what) = what_is_not_finite(world, cloth, state) {
             stage.diary.note(format_args!("cloth {cloth}: {what}"));

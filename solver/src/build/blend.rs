@@ -36,7 +36,7 @@ impl BlendWeightBuild {
     }
 
     /// Settles as many as `most` distances. True where all are settled.
-    pub fn go_on(&mut self, topology: &Topology, most: usize) -> bool {
+    pub fn advance(&mut self, topology: &Topology, most: usize) -> bool {
         let search = self.search.get_or_insert_with(|| {
             let mut search = Search::new(topology, Kept::Nearest(MOST + 1));
             for &(particle, carrier) in &self.pins {

@@ -35,7 +35,7 @@ const TELLING_APART: f32 = 0.8;
 /// A tether is as long as the cloth between its ends; a particle that no pin can reach has none.
 pub fn tethers(topology: &Topology, pins: &[u32]) -> Tethers {
     let mut tying = TetherBuild::begin(pins.to_vec());
-    tying.go_on(topology, usize::MAX);
+    tying.advance(topology, usize::MAX);
     tying.finish(topology)
 }
 
@@ -54,7 +54,7 @@ impl TetherBuild {
     }
 
     /// Settles as many as `most` distances. True where all are settled.
-    pub fn go_on(&mut self, topology: &Topology, most: usize) -> bool {
+    pub fn advance(&mut self, topology: &Topology, most: usize) -> bool {
         let search = self.search.get_or_insert_with(|| {
             let mut search = Search::new(topology, Kept::AllRound);
             for &pin in &self.pins {

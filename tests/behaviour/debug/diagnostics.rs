@@ -44,9 +44,9 @@ fn the_latest_step_is_measured() {
     app.world_mut().spawn(ClothCollider::from(Sphere::new(0.05)));
     app.world_mut().spawn((ClothCollider::from(Cuboid::new(3.0, 1.0, 3.0)), above(-0.5)));
     run(&mut app, 60);
-    let state = |cloth| state(&app, cloth);
-    let contacts: u32 = cloths.iter().map(|&cloth| state(cloth).report().unwrap().contacts).sum();
-    let time: f64 = cloths.iter().map(|&cloth| state(cloth).step_time().as_secs_f64() * 1e3).sum();
+    let contacts: u32 = cloths.iter().map(|&cloth| report(&app, cloth).contacts).sum();
+    let step_time = |cloth| get::<ClothReport>(&app, cloth).step_time().as_secs_f64() * 1e3;
+    let time: f64 = cloths.into_iter().map(step_time).sum();
     assert!(contacts > 50 && time > 0.0);
     assert_eq!(value(&app, ClothDiagnosticsPlugin::CONTACTS), f64::from(contacts));
     assert_eq!(value(&app, ClothDiagnosticsPlugin::STEP_TIME), time);

@@ -58,8 +58,8 @@ fn a_held_point_has_a_mark_and_a_line_to_where_it_is_led() {
     assert_eq!(lines(&app), [], "nothing is held");
     let target = Vec3::new(0.0, 0.1, 0.5);
     let point = state(&app, cloth).nearest_point(Vec3::new(0.1, 0.05, 0.0)).unwrap();
-    let grab = get_mut::<ClothState>(&mut app, cloth).grab(point, ClothGrip::default()).unwrap();
-    assert!(get_mut::<ClothState>(&mut app, cloth).move_grab(grab, target));
+    let grab = take_hold(&mut app, cloth, point, ClothGrip::default()).unwrap();
+    assert!(lead(&mut app, cloth, grab, target));
     run(&mut app, 5);
     let held = state(&app, cloth).point_position(point).unwrap();
     let lines = lines(&app);

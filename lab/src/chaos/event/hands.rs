@@ -9,9 +9,11 @@ pub fn grab(stage: &mut Stage) {
     let Some(cloth) = stage.some_cloth() else { return };
     let grip = settings::grip(&mut stage.dice);
     let near = stage.dice.vector(1.0);
-    let Some(mut state) = stage.app.world_mut().get_mut::<ClothState>(cloth) else { return };
+    let world = stage.app.world_mut();
+    let mut cloths = world.query::<(&ClothState, &mut ClothGrabs)>();
+    let Ok((state, mut grabs)) = cloths.get_mut(world, cloth) else { return };
     let Some(point) = state.nearest_point(near) else { return };
-    if let Some(grab) = state.grab(point, grip) {
+    if let Some(grab) = grabs.grab(state, point, grip) {
         stage.diary.note(format_args!("cloth {cloth} is grabbed at {point:?} with {grip:?}"));
         stage.grabs.push((cloth, grab));
     }
@@ -22,16 +24,16 @@ pub fn lead(stage: &mut Stage) {
     let farthest = stage.dice.spread(0.05, 100.0);
     let target = if stage.dice.wild(0.1) { Vec3::splat(stage.dice.anything()) } else { stage.dice.vector(farthest) };
     stage.diary.note(format_args!("cloth {cloth} is led to {target} by {grab:?}"));
-    stage.change(cloth, |state: &mut ClothState| {
-        state.move_grab(grab, target);
+    stage.change(cloth, |grabs: &mut ClothGrabs| {
+        grabs.move_grab(grab, target);
     });
 }
 
 pub fn release(stage: &mut Stage) {
     let Some((cloth, grab)) = stage.grabs.pop() else { return };
     stage.diary.note(format_args!("cloth {cloth} is let go by {grab:?}"));
-    stage.change(cloth, |state: &mut ClothState| {
-        state.release(grab);
+    stage.change(cloth, |grabs: &mut ClothGrabs| {
+        grabs.release(grab);
     });
 }
 

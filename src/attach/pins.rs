@@ -1,0 +1,200 @@
+//! Pinned particles follow their targets.
+
+use bevy::{
+    math::{Affine3A, Vec3A},
+    prelude::*,
+};
+
+use crate::{
+    draw::ClothMesh,
+    frame::{Jump, Poses},
+    pins::{PinTarget, Pins, targets_by_particle},
+    solver::{PinMotion, build::blend::BlendWeightBuild},
+    state::{self, ClothAttachments, ClothGrabs, ClothState, ClothStatus, HeldPin, PinAnchor, Requests, StepInput},
+};
+
+/// Reads changed [`Pins`] and has the tethers worked out anew.
+pub(crate) fn update_pins(
+    mut cloths: Query<
+        (Entity, &Pins, &ClothMesh, &ClothStatus, &mut ClothState, &mut ClothAttachments, &mut StepInput),
+        Changed<Pins>,
+    >,
+    meshes: Res<Assets<Mesh>>,
+    poses: Poses,
+) {
+    for (entity, pins, mesh, status, mut state, mut attachments, mut input) in &mut cloths {
+        let Some(source) = meshes.get(&mesh.source) else { continue };
+        if *status != ClothStatus::Ready {
+            continue;
+        }
+        let (targets, refused) = targets_by_particle(pins, source, &state.particle_of_vertex, &state.topology);
+        match refused.first() {
+            None => hold(&mut state, &mut attachments, &mut input, &targets, entity, &poses),
+            Some((_, error)) => warn!("cloth {entity} keeps the pins that it had: {error}"),
+        }
+    }
+}
+
+/// Pins particles to their targets where they are now, and lets go of the others.
+///
+/// A particle that keeps its target keeps its place there.
+pub(crate) fn hold(
+    state: &mut ClothState,
+    attachments: &mut ClothAttachments,
+    input: &mut StepInput,
+    targets: &[PinTarget],
+    cloth: Entity,
+    poses: &Poses,
+) {
+    let mut anchors: Vec<PinAnchor> = Vec::new();
+    let pins: Vec<HeldPin> = (0..)
+        .zip(targets)
+        .filter(|&(_, &target)| target != PinTarget::Free)
+        .map(|(particle, &target)| {
+            let held = attachments.pins.binary_search_by_key(&particle, |pin| pin.particle).ok();
+            let kept = held.map(|i| attachments.pins[i]).filter(|pin| pin.target == target);
+            let world_place = || (target == PinTarget::World).then(|| state.particles.position[particle as usize]);
+            let offset = kept.map_or_else(world_place, |pin| pin.offset);
+            let anchor = anchors.iter().position(|anchor| anchor.target == target).unwrap_or_else(|| {
+                let known = attachments.anchors.iter().find(|anchor| anchor.target == target);
+                anchors.push(known.copied().unwrap_or_else(|| PinAnchor::new(target, cloth, poses)));
+                anchors.len() - 1
+            });
+            HeldPin { particle, target, anchor: anchor as u32, offset }
+        })
+        .collect();
+    if pins == attachments.pins {
+        return;
+    }
+    attachments.blend_weights = None;
+    attachments.blend_build = (anchors.len() > 1).then(|| {
+        let held = pins.iter().map(|pin| (pin.particle, pin.anchor));
+        Box::new(BlendWeightBuild::begin(held.collect()))
+    });
+    attachments.pins = pins;
+    attachments.anchors = anchors;
+    let particles: Vec<u32> = attachments.pins.iter().map(|pin| pin.particle).collect();
+    attachments.keep_tethers(|pin| particles.binary_search(&pin).is_ok());
+    attachments.begin_tethers();
+    state.set_masses(&attachments.pins);
+    // Takes the places of new pins in their targets' space now, before either moves on.
+    plan_motions(state, attachments, input);
+}
+
+/// Distances along the cloth that are worked out in one step: some milliseconds. 64 x 64 particles on two pins are done
+/// in one.
+const DISTANCES_A_STEP: usize = 12_000;
+
+/// Works on what pins have asked for: tethers, by whose old ones a large cloth hangs meanwhile, and weights of the anchors
+/// that it is drawn with.
+pub(crate) fn advance_builds(mut cloths: Query<(&mut ClothState, &mut ClothAttachments, &ClothStatus)>) {
+    for (mut state, mut attachments, status) in &mut cloths {
+        let is_idle = attachments.tether_build.is_none() && attachments.blend_build.is_none();
+        if *status != ClothStatus::Ready || is_idle {
+            continue;
+        }
+        if let Some(mut build) = attachments.blend_build.take() {
+            if build.advance(&state.topology, DISTANCES_A_STEP) {
+                attachments.blend_weights = Some(build.finish());
+            } else {
+                attachments.blend_build = Some(build);
+            }
+        }
+        if let Some(mut build) = attachments.tether_build.take() {
+            if build.advance(state.built_topology(), DISTANCES_A_STEP) {
+                let tethers = build.finish(state.built_topology());
+                attachments.set_tethers(&mut state, tethers);
+            } else {
+                attachments.tether_build = Some(build);
+            }
+        }
+    }
+}
+
+/// Plans the motion of every pinned particle over the coming step. A cloth that jumps, or whose pins all do, jumps along
+/// first.
+pub(crate) fn follow_targets(
+    mut cloths: Query<(
+        Entity,
+        &ClothStatus,
+        &mut ClothState,
+        &mut ClothAttachments,
+        &mut ClothGrabs,
+        &mut Requests,
+        &mut StepInput,
+    )>,
+    poses: Poses,
+) {
+    for (entity, status, mut state, mut attachments, mut grabs, mut requests, mut input) in &mut cloths {
+        if *status != ClothStatus::Ready {
+            continue;
+        }
+        let (state, attachments, grabs) = (&mut *state, &mut *attachments, grabs.bypass_change_detection());
+        for anchor in &mut attachments.anchors {
+            anchor.follow(entity, &poses);
+        }
+        let mut jump = None;
+        if let Ok(pose) = poses.compute_global_transform(entity) {
+            let pose = pose.affine();
+            jump = take_asked_jump((state, attachments, grabs), &mut requests, pose);
+            state.pose = pose;
+            state.follow_scale(attachments);
+        }
+        if jump.is_none() {
+            jump = PinAnchor::common_jump(&attachments.anchors);
+            if let Some(jump) = &jump {
+                state::carry(state, attachments, grabs, jump);
+            }
+        }
+        if jump.is_some() {
+            attachments.anchors.iter_mut().for_each(PinAnchor::forget_way);
+        }
+        input.jump = jump;
+        state::stay_near(state, attachments, grabs);
+        plan_motions(state, attachments, &mut input);
+    }
+}
+
+/// Does the jump to `pose` that has been asked for, and tells of the one that a reset has been.
+fn take_asked_jump(
+    (state, attachments, grabs): (&mut ClothState, &mut ClothAttachments, &mut ClothGrabs),
+    requests: &mut Requests,
+    pose: Affine3A,
+) -> Option<Jump> {
+    let reset_from = requests.reset_from.take();
+    if core::mem::take(&mut requests.teleport) {
+        let jump = Jump::between(state.pose, pose)?;
+        state::carry(state, attachments, grabs, &jump);
+        return Some(jump);
+    }
+    Jump::between(reset_from?, pose)
+}
+
+/// Plans the motion of each pin from where its particle is to where its anchor has it.
+fn plan_motions(state: &mut ClothState, attachments: &mut ClothAttachments, input: &mut StepInput) {
+    let origin = Vec3A::from(state.origin);
+    input.pin_motions.clear();
+    // Bridges to physics engines fill these.
+    input.body_attachments.clear();
+    input.attachment_owners.clear();
+    input.attached_pins.clear();
+    for pin in &mut attachments.pins {
+        let anchor = &attachments.anchors[pin.anchor as usize];
+        let place = &mut state.particles.position[pin.particle as usize];
+        let end = match (pin.target, anchor.pose()) {
+            (PinTarget::World, _) => pin.offset.unwrap_or(*place),
+            (_, Some(pose)) => {
+                let from_pose = pose.translation - origin;
+                let offset = *pin.offset.get_or_insert_with(|| pose.matrix3.inverse() * (*place - from_pose));
+                pose.matrix3 * offset + from_pose
+            }
+            // The target is gone, flat or not there yet: stay.
+            (_, None) => *place,
+        };
+        let end = if end.is_finite() { end } else { *place };
+        if anchor.has_jumped() {
+            *place = end;
+        }
+        input.pin_motions.push(PinMotion { particle: pin.particle, start: *place, end });
+    }
+}

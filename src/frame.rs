@@ -1,0 +1,12 @@
+//! What a step knows of the app: its number, where entities are by now, what has jumped there, and the threads to work on.
+
+mod clock;
+mod parallel;
+mod pose;
+mod teleport;
+
+pub(crate) use clock::{ClothClock, ClothRun, FromLatestStep, StepNumber, count_steps};
+pub(crate) use parallel::{for_each, pool};
+pub(crate) use pose::{Poses, is_invertible};
+pub use teleport::ColliderTeleportThreshold;
+pub(crate) use teleport::{Jump, JumpDetection, PastPose, Teleported, forget_teleports};

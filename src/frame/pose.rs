@@ -1,0 +1,39 @@
+//! World poses of entities within a step, and whether they have got there by a jump.
+
+use bevy::{ecs::system::SystemParam, math::Affine3A, prelude::*, transform::helper::ComputeGlobalTransformError};
+
+use super::{StepNumber, Teleported};
+
+/// World poses of entities, up to date within a frame.
+#[derive(SystemParam)]
+pub(crate) struct Poses<'w, 's> {
+    transforms: TransformHelper<'w, 's>,
+    step: Res<'w, StepNumber>,
+    teleported: Res<'w, Teleported>,
+}
+
+impl Poses<'_, '_> {
+    /// World transform of an entity.
+    ///
+    /// # Errors
+    ///
+    /// Where the entity or one of its parents is gone, disabled or without a `Transform`.
+    pub fn compute_global_transform(&self, entity: Entity) -> Result<GlobalTransform, ComputeGlobalTransformError> {
+        self.transforms.compute_global_transform(entity)
+    }
+
+    /// The present step.
+    pub fn step(&self) -> StepNumber {
+        *self.step
+    }
+
+    /// Whether an entity has been teleported since the latest step.
+    pub fn is_teleported(&self, entity: Entity) -> bool {
+        self.teleported.contains(entity, *self.step)
+    }
+}
+
+/// Whether a transform keeps volume: all of its scales are finite and not zero.
+pub(crate) fn is_invertible(pose: &Affine3A) -> bool {
+    pose.is_finite() && pose.matrix3.determinant().is_normal() && pose.inverse().is_finite()
+}

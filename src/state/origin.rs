@@ -1,0 +1,47 @@
+//! The place that a cloth's positions are relative to: it jumps with teleports and follows on long ways.
+
+use bevy::{math::Vec3A, prelude::*};
+
+use super::{ClothAttachments, ClothGrabs, ClothState};
+use crate::frame::Jump;
+
+/// Positions farther than this from the cloth's origin, m, move the origin: an `f32` then still resolves 0.02 mm.
+const FARTHEST: f32 = 256.0;
+
+/// Carries the cloth rigidly along with a jump, velocities and world pins with it. Hands let go.
+pub(crate) fn carry(state: &mut ClothState, attachments: &mut ClothAttachments, grabs: &mut ClothGrabs, jump: &Jump) {
+    grabs.release_all(state);
+    let old_origin = Vec3A::from(state.origin);
+    let carry = |p: &mut Vec3A| *p = jump.place(*p, old_origin);
+    state.origin = jump.end().into();
+    for positions in [&mut state.particles.position, &mut state.step_start] {
+        positions.iter_mut().for_each(carry);
+    }
+    for velocity in &mut state.particles.velocity {
+        *velocity = jump.direction(*velocity);
+    }
+    attachments.world_places().for_each(carry);
+}
+
+/// Moves the origin after a cloth that has gone far from it.
+pub(crate) fn stay_near(state: &mut ClothState, attachments: &mut ClothAttachments, grabs: &mut ClothGrabs) {
+    let Some(&place) = state.particles.position.first() else { return };
+    if place.abs().max_element() < FARTHEST {
+        return;
+    }
+    let shift = place.round();
+    state.origin += Vec3::from(shift);
+    for positions in [&mut state.particles.position, &mut state.step_start] {
+        positions.iter_mut().for_each(|p| *p -= shift);
+    }
+    attachments.world_places().for_each(|place| *place -= shift);
+    grabs.shift_origin(shift);
+}
+
+/// The whole world has been shifted by `by` (m), and the cloth with it.
+pub(crate) fn shift(state: &mut ClothState, attachments: &mut ClothAttachments, grabs: &mut ClothGrabs, by: Vec3) {
+    state.origin += by;
+    state.pose.translation += Vec3A::from(by);
+    attachments.anchors.iter_mut().for_each(|anchor| anchor.shift(by));
+    grabs.shift_world(by);
+}

@@ -1,0 +1,286 @@
+//! Obstacles: entities that cloth drapes over.
+
+use bevy::{
+    math::{Affine3A, Isometry3d, Vec3A},
+    prelude::*,
+};
+
+use crate::{
+    frame::{FromLatestStep, Jump, JumpDetection, PastPose, Poses},
+    solver::{Body, Obstacle, Shape, Solid},
+};
+use error::ColliderError;
+use likeness::Likeness;
+
+pub(crate) mod error;
+mod likeness;
+#[cfg(feature = "mesh_colliders")]
+pub(crate) mod mesh;
+mod solid;
+
+/// An obstacle for cloth, moved by its `Transform`.
+///
+/// Move it in `FixedUpdate` or any schedule that runs once a step: its way since the latest step is what pushes the
+/// cloth, and one that moves once a frame comes in jolts where a frame has several steps or none. It jumps without sweeping
+/// what is between by [`teleport_collider`](crate::prelude::ClothCommands::teleport_collider); beyond the
+/// [`ColliderTeleportThreshold`](crate::prelude::ColliderTeleportThreshold), by itself. While it is `Disabled` it is no
+/// obstacle, and comes out of nowhere afterwards.
+///
+/// Made from one of Bevy's primitives: `ClothCollider::from(Sphere::new(0.3))`; also from an
+/// [`Ellipsoid`](crate::prelude::Ellipsoid), a `Cuboid`, a `Capsule3d`, a
+/// [`TaperedCapsule`](crate::prelude::TaperedCapsule), a `Cylinder`, a `Cone` and, for a ground, an `InfinitePlane3d`,
+/// behind which all is solid.
+///
+/// The transform's scale applies, and a ball becomes an [`Ellipsoid`](crate::prelude::Ellipsoid) where it isn't uniform.
+/// What is round about an axis stays so: it takes the larger of the factors across that, and its round ends stay balls. One
+/// warning tells of it, and of a transform that is sheared, by which only a plane and triangles are.
+#[cfg_attr(
+    feature = "mesh_colliders",
+    doc = "
+Anything else is made of triangles: `ClothCollider::mesh()` of those of the entity's own `Mesh3d`,
+`ClothCollider::convex_hull()` of those around it, and a [`HeightField`](crate::prelude::HeightField) of those of a
+terrain. Any scale applies to them exactly.
+
+```
+# use bevy::prelude::*;
+# use bevy_drape::prelude::*;
+fn setup(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, assets: Res<AssetServer>) {
+    commands.spawn((Mesh3d(meshes.add(Torus::new(0.2, 0.5))), ClothCollider::mesh()));
+    commands.spawn((Mesh3d(assets.load(\"rock.glb#Mesh0/Primitive0\")), ClothCollider::convex_hull()));
+    let hills = |x: f32, z: f32| 0.2 * ops::sin(x) * ops::cos(z);
+    commands.spawn(ClothCollider::from(HeightField::new(Vec2::splat(10.0), 64, 64, hills)));
+}
+```
+"
+)]
+///
+/// A collider of no size, or with a transform that isn't finite, is left out, with one warning.
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[require(Transform, ColliderMemory)]
+pub struct ClothCollider {
+    /// Its shape, m, in the entity's own space.
+    pub shape: ColliderShape,
+    /// Factor on the friction of the cloth that touches it, no unit. 1 by default, 0 for ice.
+    pub friction: f32,
+    /// Layers that it is in, one a bit. Cloth meets it where this has a bit in common with the cloth's mask.
+    pub layers: u32,
+}
+
+/// What a collider is like.
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[reflect(Debug, Clone, PartialEq)]
+pub enum ColliderShape {
+    /// A primitive.
+    Solid(Solid),
+    /// The triangles of a mesh: of this one, or of the entity's `Mesh3d`.
+    ///
+    /// Where they enclose a volume, each edge between two of them that face the same way, it is solid. Else they are a thin
+    /// surface, which cloth doesn't pass from either side. It follows a `SkinnedMesh` on the entity; the mesh of a
+    /// [`Cloth`](crate::prelude::Cloth) can't be used.
+    #[cfg(feature = "mesh_colliders")]
+    Mesh(Option<Handle<Mesh>>),
+    /// The convex hull of a mesh: of this one, or of the entity's `Mesh3d`. Faster than its triangles, and solid always.
+    #[cfg(feature = "mesh_colliders")]
+    ConvexHull(Option<Handle<Mesh>>),
+    /// A terrain.
+    #[cfg(feature = "mesh_colliders")]
+    HeightField(mesh::HeightField),
+}
+
+impl Default for ClothCollider {
+    /// A ball of half a metre radius.
+    fn default() -> Self {
+        Sphere::default().into()
+    }
+}
+
+impl From<ColliderShape> for ClothCollider {
+    fn from(shape: ColliderShape) -> Self {
+        Self { shape, friction: 1.0, layers: 1 }
+    }
+}
+
+#[cfg(feature = "mesh_colliders")]
+impl ClothCollider {
+    /// The triangles of the entity's own `Mesh3d`, as they are or as its skeleton moves them.
+    pub fn mesh() -> Self {
+        ColliderShape::Mesh(None).into()
+    }
+
+    /// The triangles of another mesh than the one that is drawn: a coarse one for a character, say, on the same skeleton.
+    pub fn mesh_of(mesh: Handle<Mesh>) -> Self {
+        ColliderShape::Mesh(Some(mesh)).into()
+    }
+
+    /// The convex hull of the entity's own `Mesh3d`.
+    pub fn convex_hull() -> Self {
+        ColliderShape::ConvexHull(None).into()
+    }
+
+    /// The convex hull of another mesh than the one that is drawn.
+    pub fn convex_hull_of(mesh: Handle<Mesh>) -> Self {
+        ColliderShape::ConvexHull(Some(mesh)).into()
+    }
+}
+
+impl ClothCollider {
+    /// The same, in other layers.
+    pub fn in_layers(mut self, layers: u32) -> Self {
+        self.layers = layers;
+        self
+    }
+}
+
+/// What is remembered of a collider from step to step. A copy of the collider has nothing to remember.
+#[derive(Component, Clone, Debug, Default)]
+#[component(clone_behavior = Ignore)]
+pub(crate) struct ColliderMemory {
+    /// World pose at the end of the latest step.
+    pose: FromLatestStep<Isometry3d>,
+    /// A message has told that it jumped.
+    told_of_jump: bool,
+    /// Why the collider was left out, of which a warning has told.
+    said: Option<ColliderError>,
+    /// Whether it is what is seen.
+    likeness: Likeness,
+    /// What it is made of, where it is no primitive.
+    #[cfg(feature = "mesh_colliders")]
+    triangles: mesh::Triangles,
+}
+
+/// Forgets where a collider was: if it comes back, it comes out of nowhere and not from there.
+pub(crate) fn on_collider_removed(removed: On<Remove, ClothCollider>, mut commands: Commands) {
+    commands.entity(removed.entity).try_remove::<ColliderMemory>();
+}
+
+/// All obstacles of the latest step, in world space: what cloth has met, whatever it came from. To look at only.
+#[derive(Resource, Debug, Default)]
+pub struct Obstacles {
+    /// With their entity and layers, in the order of their entities.
+    pub(crate) list: Vec<(Entity, u32, Obstacle)>,
+}
+
+impl Obstacles {
+    /// The world has been shifted, and all of them with it.
+    pub(crate) fn shift(&mut self, by: Vec3) {
+        let by = Vec3A::from(by);
+        for (_, _, obstacle) in &mut self.list {
+            obstacle.start.translation += by;
+            obstacle.end.translation += by;
+            if let Some(body) = &mut obstacle.body {
+                body.centre += by;
+            }
+        }
+    }
+
+    /// All of them, with their entity and their layers.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (Entity, u32, &Obstacle)> {
+        self.list.iter().map(|(entity, layers, obstacle)| (*entity, *layers, obstacle))
+    }
+
+    /// Writes the obstacles that `mask` selects into `near`, relative to `origin`, and whose they are into `owners`. For a
+    /// cloth that has made a `jump`.
+    pub(crate) fn around(
+        &self,
+        origin: Vec3,
+        mask: u32,
+        jump: Option<Jump>,
+        near: &mut Vec<Obstacle>,
+        owners: &mut Vec<Entity>,
+    ) {
+        let origin = Vec3A::from(origin);
+        let start = |start: Isometry3d, end| jump.map_or(start, |jump| jump.start_of(start, end));
+        let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - origin, pose.rotation);
+        let selected = || self.list.iter().filter(|(_, layers, _)| layers & mask != 0);
+        near.clear();
+        near.extend(selected().map(|(_, _, obstacle)| Obstacle {
+            start: relative(start(obstacle.start, &obstacle.end)),
+            end: relative(obstacle.end),
+            body: obstacle.body.map(|body| Body { centre: body.centre - origin, ..body }),
+            ..obstacle.clone()
+        }));
+        owners.clear();
+        owners.extend(selected().map(|&(entity, ..)| entity));
+    }
+}
+
+/// Reads all colliders and how they have moved since the latest step.
+pub(crate) fn gather_obstacles(
+    mut colliders: Query<(Entity, &ClothCollider, &mut ColliderMemory)>,
+    mut obstacles: ResMut<Obstacles>,
+    poses: Poses,
+    jumps: JumpDetection,
+) {
+    obstacles.list.clear();
+    for (entity, collider, mut memory) in &mut colliders {
+        let pose = || poses.compute_global_transform(entity).map(|pose| pose.affine()).ok();
+        match memory.placed(collider, pose) {
+            Ok(Some((shape, end))) => {
+                let start = memory.come_to(entity, end, &jumps);
+                memory.said = None;
+                memory.likeness.tell(entity);
+                let friction = collider.friction;
+                let obstacle = Obstacle { shape, start, end, rounding: 0.0, friction, body: None };
+                obstacles.list.push((entity, collider.layers, obstacle));
+            }
+            Ok(None) => memory.pose.forget(),
+            Err(error) => {
+                memory.pose.forget();
+                if memory.said.as_ref() != Some(&error) {
+                    warn!("collider {entity} is left out: {error}");
+                    memory.said = Some(error);
+                }
+            }
+        }
+    }
+    // Contact comes out the same whatever order the world keeps its entities in.
+    obstacles.list.sort_unstable_by_key(|&(entity, ..)| entity);
+}
+
+impl ColliderMemory {
+    /// Remembers a pose, and returns the one before it. What has jumped comes from where it is.
+    fn come_to(&mut self, entity: Entity, pose: Isometry3d, jumps: &JumpDetection) -> Isometry3d {
+        let past = jumps.past_pose(entity, &self.pose, &pose);
+        self.pose.set(jumps.step(), pose);
+        if past == PastPose::TooFar && !core::mem::replace(&mut self.told_of_jump, true) {
+            debug!(
+                "collider {entity} has moved so far within a step that it is taken for a teleport: ask for                  teleport_collider, or raise ColliderTeleportThreshold if it is that fast"
+            );
+        }
+        match past {
+            PastPose::Known(past) => past,
+            PastPose::Unknown | PastPose::TooFar => pose,
+        }
+    }
+
+    /// The world has been shifted, and the collider with it.
+    pub fn shift(&mut self, by: Vec3) {
+        if let Some(pose) = self.pose.as_mut() {
+            pose.translation += Vec3A::from(by);
+        }
+    }
+
+    /// Shape and world pose of the collider at the end of the coming step. None while its shape is waited for.
+    fn placed(
+        &mut self,
+        collider: &ClothCollider,
+        pose: impl Fn() -> Option<Affine3A>,
+    ) -> Result<Option<(Shape, Isometry3d)>, ColliderError> {
+        let placed = match &collider.shape {
+            ColliderShape::Solid(solid) => {
+                let pose = pose().ok_or(ColliderError::NoSize)?;
+                self.likeness.look(solid, &pose);
+                let (solid, pose) = solid::placed(*solid, pose)?;
+                Some((Shape::Solid(solid), pose))
+            }
+            #[cfg(feature = "mesh_colliders")]
+            _ => self.triangles.placed()?,
+        };
+        let is_finite = |pose: &Isometry3d| pose.translation.is_finite() && pose.rotation.is_finite();
+        let is_sound = placed.as_ref().is_none_or(|(_, pose)| is_finite(pose))
+            && collider.friction.is_finite()
+            && collider.friction >= 0.0;
+        if is_sound { Ok(placed) } else { Err(ColliderError::NoSize) }
+    }
+}

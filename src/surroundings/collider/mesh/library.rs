@@ -1,0 +1,97 @@
+//! Where the triangles of colliders, their skeletons and their poses come from.
+
+use bevy::{
+    asset::LoadState,
+    ecs::system::SystemParam,
+    math::{Affine3A, Isometry3d, Mat3A},
+    mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    prelude::*,
+};
+
+use super::{
+    prepared::{Contents, Source},
+    scale,
+};
+use crate::{
+    draw::ClothMesh,
+    error::ClothError,
+    frame::Poses,
+    surroundings::collider::{ColliderShape, error::ColliderError},
+};
+
+/// Where triangles, skeletons and poses come from.
+#[derive(SystemParam)]
+pub(crate) struct Library<'w, 's> {
+    meshes: Res<'w, Assets<Mesh>>,
+    bindposes: Option<Res<'w, Assets<SkinnedMeshInverseBindposes>>>,
+    assets: Option<Res<'w, AssetServer>>,
+    cloths: Query<'w, 's, &'static ClothMesh>,
+    poses: Poses<'w, 's>,
+}
+
+impl Library<'_, '_> {
+    /// Whether a mesh is drawn for a cloth, and rewritten all the time.
+    pub(super) fn is_of_cloth(&self, mesh: AssetId<Mesh>) -> bool {
+        self.cloths.iter().any(|cloth| cloth.drawn.id() == mesh)
+    }
+
+    /// Pose and scale of an entity.
+    pub(super) fn pose_and_scale(&self, entity: Entity) -> Result<(Isometry3d, Mat3A), ColliderError> {
+        let pose = self.poses.compute_global_transform(entity).map_err(|_| ColliderError::NoSize)?;
+        Ok(scale::split(pose.affine()))
+    }
+
+    /// The contents of a source. None while they aren't loaded.
+    pub(super) fn contents<'a>(
+        &'a self,
+        source: Source,
+        shape: &'a ColliderShape,
+    ) -> Result<Option<Contents<'a>>, ColliderError> {
+        let Some(mesh) = source.mesh() else {
+            return Ok(match shape {
+                ColliderShape::HeightField(field) => Some(Contents::HeightField(field)),
+                _ => None,
+            });
+        };
+        if let Some(mesh) = self.meshes.get(mesh) {
+            return Ok(Some(Contents::Mesh(mesh)));
+        }
+        match self.assets.as_ref().map(|assets| assets.load_state(mesh)) {
+            Some(LoadState::Failed(error)) => Err(ClothError::NotLoaded { reason: error.to_string() }.into()),
+            _ => Ok(None),
+        }
+    }
+
+    /// Writes what each joint does to the mesh's space, up to the first that isn't there. Returns the frame that they do
+    /// it in, which is upright and where the first joint is, and the mesh's scale as far as it matters to its triangles:
+    /// whether it is mirrored. None while the bind pose isn't loaded.
+    ///
+    /// The entity's own transform has no say, as it hasn't for what is drawn.
+    pub(super) fn find_joints(
+        &self,
+        skeleton: &SkinnedMesh,
+        joints: &mut Vec<Affine3A>,
+    ) -> Result<Option<(Isometry3d, Mat3A)>, ColliderError> {
+        let bindposes = self.bindposes.as_ref().and_then(|poses| poses.get(&skeleton.inverse_bindposes));
+        let Some(bindposes) = bindposes else { return Ok(None) };
+        joints.clear();
+        let poses = skeleton.joints.iter().map_while(|&joint| self.poses.compute_global_transform(joint).ok());
+        joints.extend(poses.map(|pose| pose.affine()));
+        joints.truncate(bindposes.len());
+        let Some(first) = joints.first() else {
+            return Err(ColliderError::Skeleton { needed: skeleton.joints.len().max(1), found: 0 });
+        };
+        let place = first.translation;
+        for (joint, &bindpose) in joints.iter_mut().zip(&**bindposes) {
+            // Differences first: far from the world's origin, only they have precision left.
+            joint.translation -= place;
+            *joint *= Affine3A::from_mat4(bindpose);
+        }
+        if !(place.is_finite() && joints.iter().all(|joint| joint.is_finite())) {
+            return Err(ColliderError::NoSize);
+        }
+        let is_mirrored = joints[0].matrix3.determinant() < 0.0;
+        let mirror = Mat3A::from_diagonal(Vec3::new(if is_mirrored { -1.0 } else { 1.0 }, 1.0, 1.0));
+        Ok(Some((Isometry3d::from_translation(place), mirror)))
+    }
+}

@@ -1,0 +1,191 @@
+//! Winds: entities that blow on cloth.
+
+use bevy::{
+    math::{DVec3, Isometry3d, Vec3A},
+    prelude::*,
+};
+
+use crate::{
+    frame::Poses,
+    solver::{Ellipsoid, Gusts, WindRegion, WindSource},
+};
+
+/// A wind. It presses on triangles by their area and their side to it, so it fills sails and lets flags flutter.
+///
+/// Its `Transform` turns the velocity and places the region. Several winds add up. One with a value that isn't finite
+/// is left out, with one warning.
+///
+/// ```
+/// # use bevy::prelude::*;
+/// # use bevy_drape::prelude::*;
+/// # let mut world = World::new();
+/// world.spawn(Wind { velocity: Vec3::X * 4.0, gusts: 0.6, ..default() });
+/// ```
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[require(Transform, WindMemory)]
+pub struct Wind {
+    /// Mean velocity in m/s, in the entity's own space. 2 is a light breeze, 8 a fresh one, 20 a gale. From about 3 on,
+    /// wind lifts light cloth that only lies on something: give it a region then.
+    pub velocity: Vec3,
+    /// Where it blows.
+    pub region: WindShape,
+    /// Width in m of the edge, inside of the region, over which the wind dies down.
+    pub edge: f32,
+    /// Strength of gusts as a share of the mean speed. 0 for none, 0.5 for gusty, 1 for calm to double.
+    pub gusts: f32,
+    /// Time from gust to gust in s. 2 to 10.
+    pub gust_period: f32,
+    /// Strength of eddies as a share of the mean speed. 0 for none, 0.1 over open land, 0.3 in a town.
+    pub turbulence: f32,
+    /// Size of the eddies in m. 0.3 to 5. A cloth of more than three of them feels them coarser than they are.
+    pub eddy_size: f32,
+    /// Seed of gusts and eddies: the same seed blows the same on every run.
+    pub seed: u32,
+}
+
+impl Default for Wind {
+    /// Still air everywhere that, given a velocity, is a wind with moderate gusts and eddies.
+    fn default() -> Self {
+        Self {
+            velocity: Vec3::ZERO,
+            region: WindShape::default(),
+            edge: 0.5,
+            gusts: 0.4,
+            gust_period: 4.0,
+            turbulence: 0.15,
+            eddy_size: 1.0,
+            seed: 0,
+        }
+    }
+}
+
+/// Where a wind blows, in its entity's own space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub enum WindShape {
+    /// Everywhere.
+    #[default]
+    Everywhere,
+    /// In a ball, or in the ellipsoid that it is under a scale that isn't uniform.
+    Sphere(Sphere),
+    /// In a box.
+    Cuboid(Cuboid),
+}
+
+impl Wind {
+    /// The wind in the world. None where a value isn't finite or a size is negative.
+    fn placed(&self, transform: &GlobalTransform) -> Option<WindSource> {
+        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
+        let pose = Isometry3d::new(translation, rotation);
+        let (region, size) = match self.region {
+            WindShape::Everywhere => (WindRegion::Everywhere, 0.0),
+            WindShape::Sphere(Sphere { radius }) => {
+                let shape = Ellipsoid { half_size: radius * scale.abs() };
+                let region = if shape.is_ball() {
+                    let (centre, radius) = (pose.translation, shape.half_size.max_element());
+                    WindRegion::Sphere { centre, radius, edge: self.edge }
+                } else {
+                    WindRegion::Ellipsoid { pose, shape, edge: self.edge }
+                };
+                (region, shape.half_size.element_sum())
+            }
+            WindShape::Cuboid(Cuboid { half_size }) => {
+                let half_size = Vec3A::from(half_size * scale.abs());
+                let region = WindRegion::Cuboid { pose, half_size, edge: self.edge };
+                (region, half_size.min_element())
+            }
+        };
+        // Turned, and mirrored, as the entity is, and as fast at any scale.
+        let direction = transform.affine().matrix3 * Vec3A::from(self.velocity);
+        let velocity = direction.normalize_or_zero() * self.velocity.length();
+        let shares = [self.edge, self.gusts, self.gust_period, self.turbulence, self.eddy_size];
+        let is_valid = shares.iter().chain([&size]).all(|v| v.is_finite() && *v >= 0.0)
+            && velocity.is_finite()
+            && pose.translation.is_finite();
+        is_valid.then_some(WindSource {
+            velocity,
+            gusts: Gusts {
+                strength: self.gusts,
+                period: self.gust_period,
+                turbulence: self.turbulence,
+                eddy_size: self.eddy_size,
+                seed: self.seed,
+            },
+            region,
+            origin: Vec3A::ZERO,
+            travelled: DVec3::ZERO,
+            gusts_passed: 0.0,
+        })
+    }
+}
+
+/// What is remembered of a wind from step to step.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub(crate) struct WindMemory {
+    /// The wind was left out and a warning said so.
+    warned: bool,
+    /// How far its air has come, m.
+    travelled: DVec3,
+    /// How many gusts have come.
+    gusts_passed: f64,
+}
+
+/// All winds of the coming step, in world space.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Winds {
+    list: Vec<(Entity, WindSource)>,
+    /// How far the world has been shifted since it began, m: gusts and eddies have come along.
+    shift: DVec3,
+}
+
+impl Winds {
+    /// Writes all winds into `felt`, relative to `origin`.
+    pub fn around(&self, origin: Vec3, felt: &mut Vec<WindSource>) {
+        // As it was before the world was shifted.
+        let unshifted = (origin.as_dvec3() - self.shift).as_vec3a();
+        let origin = Vec3A::from(origin);
+        felt.clear();
+        felt.extend(self.list.iter().map(|&(_, wind)| WindSource {
+            region: wind.region.relative_to(origin),
+            origin: unshifted,
+            ..wind
+        }));
+    }
+
+    /// The world has been shifted, and all winds with it.
+    pub fn shift(&mut self, by: Vec3) {
+        self.shift += by.as_dvec3();
+        for (_, wind) in &mut self.list {
+            wind.region = wind.region.relative_to(Vec3A::from(-by));
+        }
+    }
+}
+
+/// Reads all winds.
+pub(crate) fn gather_winds(
+    mut sources: Query<(Entity, &Wind, &mut WindMemory)>,
+    mut winds: ResMut<Winds>,
+    poses: Poses,
+    time: Res<Time>,
+) {
+    winds.list.clear();
+    for (entity, wind, mut memory) in &mut sources {
+        let pose = poses.compute_global_transform(entity).ok();
+        let placed = pose.and_then(|pose| wind.placed(&pose));
+        if placed.is_none() && !memory.warned {
+            warn!("wind {entity} is left out: give it finite values, and sizes of zero or more");
+        }
+        memory.warned = placed.is_none();
+        if let Some(wind) = placed {
+            let WindMemory { travelled, gusts_passed, .. } = *memory;
+            let mut wind = WindSource { travelled, gusts_passed, ..wind };
+            wind.advance(time.delta_secs());
+            memory.travelled = wind.travelled;
+            memory.gusts_passed = wind.gusts_passed;
+            winds.list.push((entity, wind));
+        }
+    }
+    // Sums come out the same whatever order the world keeps its entities in.
+    winds.list.sort_unstable_by_key(|&(entity, _)| entity);
+}

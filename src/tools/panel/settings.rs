@@ -1,0 +1,117 @@
+//! All that can be edited, as it is in the world.
+
+use bevy::prelude::*;
+
+use super::{aim::Aim, code, fields, memory::Memory};
+use crate::{
+    cloth::Cloth,
+    fabric::{ClothSprings, Fabric, handle::FabricHandle},
+    surroundings::{ClothGravity, wind::Wind},
+};
+
+/// All that can be edited.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Settings {
+    /// Of the first chosen cloth.
+    pub cloth: Option<(Cloth, Fabric)>,
+    /// Of the first chosen cloth, where it has them.
+    pub springs: Option<ClothSprings>,
+    pub gravity: Option<Vec3>,
+    pub wind: Option<(Entity, Wind, Aim)>,
+    pub clock: Option<Clock>,
+    #[cfg(feature = "debug")]
+    pub debug: super::debug::Switches,
+}
+
+/// The game's clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Clock {
+    pub is_paused: bool,
+    /// Of the real one's speed.
+    pub speed: f32,
+}
+
+impl Settings {
+    pub fn read(world: &World, chosen: &[Entity], memory: &Memory) -> Self {
+        let cloth = chosen
+            .first()
+            .and_then(|&cloth| Some((world.get::<Cloth>(cloth)?.clone(), world.get::<Fabric>(cloth)?.clone())));
+        let wind = memory.wind.and_then(|entity| {
+            let wind = world.get::<Wind>(entity)?.clone();
+            // A calm has no direction: the one that was set here is kept.
+            let kept = memory.aim.filter(|&(of, velocity, _)| of == entity && velocity == wind.velocity);
+            let aim = kept.map_or_else(|| Aim::of(wind.velocity), |(_, _, aim)| aim);
+            Some((entity, wind, aim))
+        });
+        Self {
+            cloth,
+            springs: chosen.first().and_then(|&cloth| world.get(cloth).cloned()),
+            wind,
+            gravity: world.get_resource::<ClothGravity>().map(|gravity| gravity.0),
+            clock: world
+                .get_resource::<Time<Virtual>>()
+                .map(|time| Clock { is_paused: time.is_paused(), speed: time.relative_speed() }),
+            #[cfg(feature = "debug")]
+            debug: super::debug::Switches::read(world, chosen),
+        }
+    }
+
+    /// Writes what differs from `before`.
+    pub fn write(&self, world: &mut World, before: &Self, chosen: &[Entity], memory: &mut Memory) {
+        if let (Some(before), Some(after)) = (&before.cloth, &self.cloth) {
+            for &cloth in chosen {
+                fields::write(world, cloth, &before.0, &after.0);
+                // What fits the first cloth needn't fit the others.
+                if fields::write_good(world, cloth, &before.1, &after.1, |fabric| fabric.material().is_ok()) {
+                    detach(world, cloth);
+                }
+            }
+        }
+        if let (Some(before), Some(after)) = (&before.springs, &self.springs) {
+            for &cloth in chosen {
+                fields::write(world, cloth, before, after);
+            }
+        }
+        if let (Some((_, old, old_aim)), Some((entity, wind, aim))) = (&before.wind, &self.wind) {
+            let mut wind = wind.clone();
+            if aim != old_aim {
+                wind.velocity = aim.velocity();
+                memory.aim = Some((*entity, wind.velocity, *aim));
+            }
+            fields::write(world, *entity, old, &wind);
+        }
+        if let Some(gravity) = self.gravity.filter(|_| self.gravity != before.gravity)
+            && let Some(mut own) = world.get_resource_mut::<ClothGravity>()
+        {
+            own.0 = gravity;
+        }
+        if let Some(clock) = self.clock.filter(|_| self.clock != before.clock)
+            && let Some(mut time) = world.get_resource_mut::<Time<Virtual>>()
+        {
+            time.set_relative_speed(clock.speed);
+            if clock.is_paused { time.pause() } else { time.unpause() }
+        }
+        #[cfg(feature = "debug")]
+        self.debug.write(world, &before.debug, chosen);
+    }
+
+    /// The chosen cloth as Rust code.
+    pub fn cloth_code(&self) -> Option<String> {
+        let (cloth, fabric) = self.cloth.as_ref()?;
+        let springs = self.springs.as_ref().map(code::component);
+        let parts = [code::component(cloth), code::component(fabric)].into_iter().chain(springs);
+        Some(parts.map(|part| part + ",\n").collect())
+    }
+
+    /// The chosen wind as Rust code.
+    pub fn wind_code(&self) -> Option<String> {
+        self.wind.as_ref().map(|(_, wind, _)| format!("{},\n", code::component(wind)))
+    }
+}
+
+/// Keeps a cloth's fabric as it is edited here.
+pub(super) fn detach(world: &mut World, cloth: Entity) {
+    if let Some(mut follower) = world.get_mut::<FabricHandle>(cloth).filter(|follower| !follower.detached) {
+        follower.detached = true;
+    }
+}
