@@ -1,25 +1,294 @@
 //! Real-time cloth for the Bevy game engine, in real units.
 //!
-//! Add [`ClothPlugin`](prelude::ClothPlugin), put a [`Cloth`](prelude::Cloth) next to a `Mesh3d`, and that mesh hangs,
-//! blows in the [`Wind`](prelude::Wind) and drapes over every [`ClothCollider`](prelude::ClothCollider).
+//! Put a [`Cloth`](prelude::Cloth) next to a `Mesh3d`, and that mesh hangs, blows in the wind and drapes over
+//! obstacles, at a fixed time step and with the same bits on every run. This page is a tour; each type has its own
+//! page, with units and sensible ranges.
+//!
+//! - [Getting started](#getting-started)
+//! - [Fabrics](#fabrics)
+//! - [Pins](#pins)
+//! - [Wind and forces](#wind-and-forces)
+//! - [Obstacles](#obstacles)
+//! - [Cloth on cloth](#cloth-on-cloth)
+//! - [Characters](#characters)
+//! - [Dragging](#dragging)
+//! - [Panel](#panel)
+//! - [Debugging](#debugging)
+//! - [Time and order](#time-and-order)
+//! - [Determinism](#determinism)
+//! - [Servers](#servers)
+//! - [Troubleshooting](#troubleshooting)
+//! - [Units](#units)
+//! - [Features](#features)
+//! - [The solver alone](#the-solver-alone)
+//!
+//! # Getting started
+//!
+//! Add [`ClothPlugin`](prelude::ClothPlugin), and spawn a mesh with a [`Cloth`](prelude::Cloth). All else comes with
+//! it: [`Fabric`](prelude::Fabric), [`Pins`](prelude::Pins), [`ClothState`](prelude::ClothState) to read and push the
+//! cloth, and [`ClothStatus`](prelude::ClothStatus), which says whether it runs.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
 //! use bevy_drape::prelude::*;
 //!
+//! App::new().add_plugins((DefaultPlugins, ClothPlugin::default())).add_systems(Startup, setup).run();
+//!
 //! fn setup(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>) {
 //!     commands.spawn((
 //!         Mesh3d(meshes.add(ClothGrid::new(1.0, 1.0, 32, 32))),
 //!         Cloth::default(),
-//!         Fabric { density: 0.1, ..default() },
 //!         Pins::edge_corners(ClothEdge::Top),
 //!         Transform::from_xyz(0.0, 2.0, 0.0),
 //!     ));
-//!     commands.spawn(Wind { velocity: Vec3::Z * 4.0, ..default() });
 //! }
 //! ```
 //!
-//! How a mesh becomes what is drawn, and where to look for it:
+//! Any triangle mesh will do, from code or glTF, indexed or not. Vertices that share a position move as one particle
+//! and stay several vertices. Meshes that load late become cloth when they arrive, meshes that change are rebuilt, and
+//! the mesh asset is copied for each cloth. In a loaded scene, insert `Cloth` on the entity that has the `Mesh3d`.
+//! Strands hold a mesh best that is one rectangle or tube of quads, triangulated or not:
+//! [`ClothGrid`](prelude::ClothGrid) makes such.
+//!
+//! # Fabrics
+//!
+//! A [`Fabric`](prelude::Fabric) has what a textile laboratory measures: density, thickness, stiffness along warp and
+//! weft, shear, bending rigidity, damping, friction, drag and lift. Its constants don't depend on the mesh, as long as
+//! edges are no longer than [`max_edge_length`](prelude::Fabric::max_edge_length). Eight presets, from silk to leather,
+//! say which of their constants were measured.
+//!
+//! ```
+//! # use bevy_drape::prelude::*;
+//! let stiff_denim = Fabric { bending_rigidity: 60e-6, ..Fabric::DENIM };
+//! assert!(stiff_denim.max_edge_length() < 0.041); // a mesh with longer edges can't show its folds
+//! println!("{}", Fabric::PRESETS[0].about()); // which of its constants were measured, and by whom
+//! ```
+//!
+//! The warp runs along V of the UVs, the weft along U; the vertex attribute [`ATTRIBUTE_WARP`](prelude::ATTRIBUTE_WARP)
+//! says otherwise. A [`FabricHandle`](prelude::FabricHandle) follows a `*.fabric.ron` file, which may be edited while
+//! the app runs, where it enables Bevy's feature `file_watcher`; a file with a field that is missing, unknown or out of
+//! its range is refused with file, line and field. [`ClothSprings`](prelude::ClothSprings) beside the cloth are springs
+//! of the textbook instead, and what they amount to depends on the mesh.
+//!
+//! # Pins
+//!
+//! [`Pins`](prelude::Pins) fix vertices to the cloth's own entity, to another one, or to the world: by index, region,
+//! UV, vertex colour, attribute, corner, edge or function. Change the component at any time, or use
+//! [`pin_cloth`](prelude::ClothCommands::pin_cloth) and [`unpin_cloth`](prelude::ClothCommands::unpin_cloth).
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_drape::prelude::*;
+//! # #[derive(Component)] struct Pole;
+//! fn hoist(mut commands: Commands, pole: Single<Entity, With<Pole>>, flag: Single<Entity, With<Cloth>>) {
+//!     commands.entity(*flag).insert(Pins::edge(ClothEdge::Left).to_entity(*pole));
+//! }
+//! ```
+//!
+//! Tethers keep every particle within the cloth's own length of its pins, plus
+//! [`tether_slack`](prelude::Cloth::tether_slack): they keep pinned cloth from stretching like rubber. A glTF model can
+//! say itself what is pinned or where its warp runs, by the attributes [`_PIN`](prelude::ATTRIBUTE_PIN) and
+//! [`_WARP`](prelude::ATTRIBUTE_WARP).
+//!
+//! # Wind and forces
+//!
+//! A [`Wind`](prelude::Wind) is an entity. It presses on triangles by area and angle, everywhere or in a region, with
+//! gusts and eddies from a seed. [`ClothGravity`](prelude::ClothGravity) is a resource.
+//! [`ClothState`](prelude::ClothState) takes forces and impulses of a game's own.
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_drape::prelude::*;
+//! fn blow(mut commands: Commands) {
+//!     commands.spawn(Wind { velocity: Vec3::X * 4.0, gusts: 0.6, ..default() });
+//! }
+//!
+//! fn explode(mut cloths: Query<&mut ClothState>) {
+//!     for mut cloth in &mut cloths {
+//!         cloth.add_impulse_in_radius(Vec3::ZERO, 2.0, Vec3::Y * 0.5); // N·s
+//!     }
+//! }
+//! ```
+//!
+//! # Obstacles
+//!
+//! An entity with a [`ClothCollider`](prelude::ClothCollider) is an obstacle, moved by its transform: a primitive, or,
+//! with the feature `mesh_colliders`, a mesh, a convex hull or a terrain. Contact is solved in every substep, with
+//! Coulomb friction and layers.
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_drape::prelude::*;
+//! fn furnish(mut commands: Commands) {
+//!     commands.spawn(ClothCollider::from(InfinitePlane3d::default())); // the ground
+//!     commands.spawn((ClothCollider::from(Sphere::new(0.3)), Transform::from_xyz(0.0, 0.5, 0.0)));
+//! }
+//! ```
+//!
+//! Move obstacles in `FixedUpdate`. One that is put elsewhere sweeps nothing, if that is told by
+//! [`teleport_collider`](prelude::ClothCommands::teleport_collider) or is beyond the
+//! [`ColliderTeleportThreshold`](prelude::ColliderTeleportThreshold). The colliders of Avian and Rapier are obstacles
+//! too, and cloth pushes their bodies: [`ClothAvianPlugin`](prelude::ClothAvianPlugin),
+//! [`ClothRapierPlugin`](prelude::ClothRapierPlugin).
+//!
+//! # Cloth on cloth
+//!
+//! [`self_collision`](prelude::Cloth::self_collision) is off by default, since it costs.
+//! [`SelfCollision::Robust`](prelude::SelfCollision::Robust) keeps triangles and edges apart, of one cloth and of all
+//! others that have it on: folds, layers, knots and piles.
+//!
+//! ```
+//! # use bevy_drape::prelude::*;
+//! let sheet = Cloth { self_collision: SelfCollision::Robust, self_distance: 0.004, ..Default::default() };
+//! ```
+//!
+//! # Characters
+//!
+//! Skinned cloth with maximum distances from the animation is to come. Today a cape or skirt can be pinned to bones, as
+//! to any entity, and collide with its wearer: a `ClothCollider::mesh()` next to a `SkinnedMesh` follows the skeleton,
+//! and capsules may hang on bones. The mesh of the cloth itself has no skin: a skinned one is simulated from its bind
+//! pose, with a warning.
+//!
+//! [`teleport_cloth`](prelude::ClothCommands::teleport_cloth) on the root of a character takes along its cloths,
+//! obstacles and pins; [`shift_world`](prelude::WorldShiftCommands::shift_world) is for floating origins.
+//!
+//! # Dragging
+//!
+//! [`ClothPickingPlugin`](prelude::ClothPickingPlugin) lets mouse and fingers take hold of cloth, by a pull of bounded
+//! force. The wheel, or a second finger beside the cloth, moves the point nearer and farther; let go with Shift, it
+//! stays pinned. A camera that turns with the same button should rest while [`PointerGrabs`](prelude::PointerGrabs)
+//! isn't empty. Hands in virtual reality and scripts do the same by code:
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_drape::prelude::*;
+//! # #[derive(Component)] struct Hand { hold: Option<GrabId> }
+//! fn follow_hand(mut cloth: Single<&mut ClothState>, mut hand: Single<(&mut Hand, &Transform)>) {
+//!     let (hand, place) = &mut *hand;
+//!     let grabbed = cloth.nearest_point(place.translation).and_then(|point| cloth.grab(point, ClothGrip::default()));
+//!     hand.hold = hand.hold.or(grabbed);
+//!     if let Some(hold) = hand.hold {
+//!         cloth.move_grab(hold, place.translation); // later: cloth.release(hold)
+//!     }
+//! }
+//! ```
+//!
+//! [`ClothGrabbed`](prelude::ClothGrabbed) and [`ClothReleased`](prelude::ClothReleased) tell of both.
+//!
+//! # Panel
+//!
+//! [`ClothPanelPlugin`](panel::ClothPanelPlugin) opens a window with F1: every constant with its unit, solver, pins and
+//! wind; pause, single step and slow motion; time, stretch and energy; advice where the settings ask for more than the
+//! substeps can solve. *Revert* goes back to what was loaded, *Copy as Rust* puts the components' code on the
+//! clipboard. [`cloth_panel`](panel::cloth_panel) draws the same into a window of a game's own. All components work in
+//! bevy-inspector-egui as well.
+//!
+//! ```no_run
+//! # #[cfg(feature = "panel")] {
+//! use bevy::prelude::*;
+//! use bevy_drape::{panel::ClothPanelPlugin, prelude::*};
+//!
+//! App::new().add_plugins((DefaultPlugins, ClothPlugin::default(), ClothPanelPlugin::default())).run();
+//! # }
+//! ```
+//!
+//! # Debugging
+//!
+//! [`ClothState::report`](prelude::ClothState::report) has what the latest step did,
+//! [`strain`](prelude::ClothState::strain), [`energy`](prelude::ClothState::energy) and
+//! [`step_time`](prelude::ClothState::step_time) how the cloth fares, and [`structure`](prelude::ClothState::structure)
+//! what its mesh was found to be. [`ClothDebugPlugin`](debug::ClothDebugPlugin) draws springs by strain, tethers, pins,
+//! normals, obstacles and wind, as a [`ClothDebugConfig`](debug::ClothDebugConfig) or a
+//! [`ClothDebugView`](debug::ClothDebugView) asks; [`ClothDiagnosticsPlugin`](debug::ClothDiagnosticsPlugin) counts for
+//! Bevy's diagnostics. Nothing panics: what can't be used is refused once, in a warning with the cause and the mend.
+//! `docs/debugging.md` in the repository goes through the symptoms.
+//!
+//! # Time and order
+//!
+//! Cloth steps in `FixedPostUpdate`, or in the schedule that [`ClothPlugin::new`](prelude::ClothPlugin::new) is given,
+//! and drawing interpolates. [`ClothSystems`](prelude::ClothSystems) are the stages to order systems around: `Prepare`
+//! (`PreUpdate`), `Gather`, `Simulate` and `Finalize` (the plugin's schedule), `Draw` (`PostUpdate`). Push cloth before
+//! `Simulate`, read it after `Finalize`.
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_drape::prelude::*;
+//! # fn read_positions() {}
+//! # let mut app = App::new();
+//! app.add_observer(|ready: On<ClothReady>| info!("{} is cloth", ready.entity))
+//!     .add_systems(FixedPostUpdate, read_positions.after(ClothSystems::Finalize));
+//! ```
+//!
+//! Besides [`ClothReady`](prelude::ClothReady) there are [`ClothFailed`](prelude::ClothFailed) and
+//! [`ClothReset`](prelude::ClothReset).
+//!
+//! # Determinism
+//!
+//! The same input gives the same bits: on one thread or several, whatever instructions the processor has, and whatever
+//! order the world stores its entities' components in. What differs from run to run is input: frames that move
+//! obstacles, pointers, and when large meshes, which are worked on beside the frames, become cloth.
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_drape::prelude::*;
+//! App::new().add_plugins((MinimalPlugins, ClothPlugin::default().single_threaded())); // the same bits as without
+//! ```
+//!
+//! # Servers
+//!
+//! The crate builds and runs without a window, a renderer and its default features.
+//!
+//! ```no_run
+//! use bevy::{mesh::MeshPlugin, prelude::*};
+//! use bevy_drape::prelude::*;
+//!
+//! App::new()
+//!     .add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin, ClothPlugin::default()))
+//!     .run();
+//! ```
+//!
+//! # Troubleshooting
+//!
+//! Look at [`ClothStatus`](prelude::ClothStatus) first. `Waiting`: there is no `Mesh3d` on the entity, or its mesh
+//! hasn't loaded. `Building`: a mesh of more than 10,000 triangles is worked on beside the frames. `Failed`: the
+//! [`ClothError`] says what is wrong and how to mend it.
+//!
+//! | symptom | what to do |
+//! |---|---|
+//! | it stretches | less [`max_strain`](prelude::Cloth::max_strain) or more [`substeps`](prelude::Cloth::substeps); check [`tether_slack`](prelude::Cloth::tether_slack) and the fabric's stiffness |
+//! | folds are too wide, and the log says that the mesh is too coarse | a finer mesh, or more [`bending_rigidity`](prelude::Fabric::bending_rigidity) |
+//! | triangles cut through an edge of an obstacle | more [`collision_margin`](prelude::Cloth::collision_margin), more substeps, or a finer mesh |
+//! | a small, fast or sharp obstacle pierces it | 96 substeps by hand; as a mesh, 32 |
+//! | it passes through itself or other cloth | [`SelfCollision::Robust`](prelude::SelfCollision::Robust) on both, and their layers and masks; more substeps |
+//! | it jitters on an obstacle | at least 8 substeps where they are set by hand; move obstacles in `FixedUpdate` |
+//! | it is black on one side | `double_sided: true, cull_mode: None` in the material |
+//! | it lags behind a jump of its entity | [`teleport_cloth`](prelude::ClothCommands::teleport_cloth), on the root of its character |
+//! | an obstacle that is put elsewhere throws it | [`teleport_collider`](prelude::ClothCommands::teleport_collider) |
+//! | a very fast obstacle passes without a touch | a larger [`ColliderTeleportThreshold`](prelude::ColliderTeleportThreshold) |
+//!
+//! # Units
+//!
+//! Metres, kilograms, seconds, newtons; one unit of world space is a metre. Density is kg/m², thickness m, stiffness
+//! N/m (force over width and strain), rigidity N·m, inner damping s, damping of the velocity 1/s; of plain springs, N/m
+//! and N·s/m. Rest lengths and masses come from the mesh's rest shape in world scale. Lengths follow the scale of the
+//! entity while the cloth runs; masses are those of when it was built, so call
+//! [`reset_cloth`](prelude::ClothCommands::reset_cloth) after a change that stays.
+//!
+//! # Features
+//!
+//! | feature | what it brings |
+//! |---|---|
+//! | `parallel` (default) | steps several cloths side by side, and shares a large one between threads; without it everything runs on one thread, with the same bits |
+//! | `mesh_colliders` (default) | meshes, convex hulls and height fields as obstacles |
+//! | `picking` (default) | [`ClothPickingPlugin`](prelude::ClothPickingPlugin), on `bevy_picking` |
+//! | `avian` | [`ClothAvianPlugin`](prelude::ClothAvianPlugin), for Avian 0.7 |
+//! | `rapier` | [`ClothRapierPlugin`](prelude::ClothRapierPlugin), for bevy_rapier3d 0.36 |
+//! | `panel` | [`ClothPanelPlugin`](panel::ClothPanelPlugin), on bevy_egui 0.40.1 |
+//! | `debug` | [`ClothDebugPlugin`](debug::ClothDebugPlugin) and [`ClothDiagnosticsPlugin`](debug::ClothDiagnosticsPlugin) |
+//!
+//! # The solver alone
+//!
+//! How a mesh becomes what is drawn:
 //!
 //! ```text
 //! mesh -> build -> particles and topology
@@ -29,7 +298,8 @@
 //!                                            renderer <- mesh <- normals, tangents <- interpolation <- draw <------+
 //! ```
 //!
-//! All quantities are in SI units: m, kg, s, N. The solver is in [`solver`] and can be used without Bevy's ECS.
+//! The solver is in [`solver`] and can be used without Bevy's ECS. `docs/architecture.md` in the repository has a step
+//! in its order.
 
 /// Compiles the code of the README.
 #[cfg(doctest)]
