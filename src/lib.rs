@@ -163,12 +163,15 @@
 //! # use bevy::prelude::*;
 //! # use bevy_drape::prelude::*;
 //! # #[derive(Component)] struct Hand { hold: Option<GrabId> }
-//! fn follow_hand(mut cloth: Single<&mut ClothState>, mut hand: Single<(&mut Hand, &Transform)>) {
+//! fn follow_hand(cloth: Single<(&ClothState, &mut ClothGrabs)>, mut hand: Single<(&mut Hand, &Transform)>) {
+//!     let (state, mut grabs) = cloth.into_inner();
 //!     let (hand, place) = &mut *hand;
-//!     let grabbed = cloth.nearest_point(place.translation).and_then(|point| cloth.grab(point, ClothGrip::default()));
-//!     hand.hold = hand.hold.or(grabbed);
+//!     if hand.hold.is_none() {
+//!         let point = state.nearest_point(place.translation);
+//!         hand.hold = point.and_then(|point| grabs.grab(state, point, ClothGrip::default()));
+//!     }
 //!     if let Some(hold) = hand.hold {
-//!         cloth.move_grab(hold, place.translation); // later: cloth.release(hold)
+//!         grabs.move_grab(hold, place.translation); // later: grabs.release(hold)
 //!     }
 //! }
 //! ```
@@ -194,10 +197,10 @@
 //!
 //! # Debugging
 //!
-//! [`ClothState::report`](prelude::ClothState::report) has what the latest step did,
-//! [`strain`](prelude::ClothState::strain), [`energy`](prelude::ClothState::energy) and
-//! [`step_time`](prelude::ClothState::step_time) how the cloth fares, and [`structure`](prelude::ClothState::structure)
-//! what its mesh was found to be. [`ClothDebugPlugin`](debug::ClothDebugPlugin) draws springs by strain, tethers, pins,
+//! [`ClothReport`](prelude::ClothReport) has what the latest step did and how long it took,
+//! [`ClothState`](prelude::ClothState) by [`strain`](prelude::ClothState::strain) and
+//! [`energy`](prelude::ClothState::energy) how the cloth fares, and by [`structure`](prelude::ClothState::structure) what
+//! its mesh was found to be. [`ClothDebugPlugin`](debug::ClothDebugPlugin) draws springs by strain, tethers, pins,
 //! normals, obstacles and wind, as a [`ClothDebugConfig`](debug::ClothDebugConfig) or a
 //! [`ClothDebugView`](debug::ClothDebugView) asks; [`ClothDiagnosticsPlugin`](debug::ClothDiagnosticsPlugin) counts for
 //! Bevy's diagnostics. Nothing panics: what can't be used is refused once, in a warning with the cause and the mend.
