@@ -141,26 +141,3 @@ impl StepContext<'_> {
         self.material.thickness + self.margin
     }
 }
-
-/// What a step did.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepReport {
-    /// Substeps taken.
-    pub substeps: u32,
-    /// Substeps that [`Method::Explicit`] would have needed for the whole stiffness and damping; else those taken.
-    pub needed_substeps: u32,
-    /// Share of the asked stiffness and damping that was used, 0..=1. Below one when [`Method::Explicit`] would have
-    /// needed more than [`StepContext::max_substeps`] substeps for the whole.
-    pub stiffness_scale: f32,
-    /// Contacts in the last substep: of particles with obstacles, and of points, edges and faces with each other. Those of cloths
-    /// that are stepped together count for the first.
-    pub contacts: u32,
-    /// Sum of the external forces and those of the air on all particles, whatever their direction, N.
-    pub steady_force: f32,
-}
-
-impl StepReport {
-    /// Of a step that did nothing.
-    pub(crate) const NOTHING: Self =
-        Self { substeps: 0, needed_substeps: 0, stiffness_scale: 1.0, contacts: 0, steady_force: 0.0 };
-}

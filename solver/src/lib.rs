@@ -29,8 +29,8 @@ pub use crate::{
     build::{MeshError, SourceMesh, Welded, build, grab_tethers, tethers},
     input::{
         AttachedPin, Body, BodyAttachment, BodyDisplacement, BodyImpulse, Grab, GrabTether, Gusts, MAX_TIME_STEP,
-        Method, Obstacle, PinMotion, SelfCollision, StepContext, StepReport, SubstepPolicy, Tether, Tethers,
-        WindRegion, WindSource,
+        Method, Obstacle, PinMotion, SelfCollision, StepContext, SubstepPolicy, Tether, Tethers, WindRegion,
+        WindSource,
     },
     layout::simd::SimdLevel,
     material::{Elasticity, Material, Moduli, SpringConstants, SpringLaw},
@@ -38,7 +38,11 @@ pub use crate::{
     particles::Particles,
     scratch::Scratch,
     shape::{Ellipsoid, MeshShape, Shape, Solid, TaperedCapsule, TriangleMesh},
-    step::{Member, step, step_together},
+    step::{
+        Member,
+        report::{StepReport, SubstepReason},
+        step, step_together,
+    },
     topology::{
         Bend, BendBatch, Face, Grain, Spring, SpringBatch, SpringKind, Topology,
         lattice::{Lattice, StrandSet},

@@ -19,17 +19,21 @@ use crate::{
     explicit::{self, Stability},
     force::wind,
     imperfection,
-    input::{ContactRisk, MAX_TIME_STEP, Method, SelfCollision, StepContext, StepReport},
+    input::{ContactRisk, MAX_TIME_STEP, Method, SelfCollision, StepContext},
     integrate::{self, Motion, SpeedLimit},
     layout::simd::SimdLevel,
     parallel::grid_substep,
     particles::{Particles, lanes::Lanes},
     scratch::Scratch,
     shape::sharp_features::Sharpness,
-    step::substep::Substep,
+    step::{
+        report::{StepReport, SubstepReason},
+        substep::Substep,
+    },
     topology::{Topology, lattice::Lattice, level::LevelPass},
 };
 
+pub(crate) mod report;
 mod substep;
 
 /// How often the forces of the air are renewed within a step, Hz. They change more slowly than the springs.
@@ -134,6 +138,7 @@ struct Plan<'a> {
     longest_edge: f32,
     levels: &'a [LevelPass],
     substeps: u32,
+    reason: SubstepReason,
     stability: Stability,
 }
 
@@ -156,18 +161,32 @@ impl<'a> Plan<'a> {
         let longest_edge = if is_near { feature::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
         let touches = ctx.self_collision != SelfCollision::Off;
-        let is_mounted = !ctx.attached_pins.is_empty();
-        let with_care = is_near || touches || is_mounted || !is_tethered || !ctx.grabs.is_empty();
+        let is_on_body = !ctx.attached_pins.is_empty();
+        let some = match () {
+            () if is_near => Some(SubstepReason::Obstacle),
+            () if touches => Some(SubstepReason::SelfCollision),
+            () if is_on_body => Some(SubstepReason::OnBody),
+            () if !ctx.grabs.is_empty() => Some(SubstepReason::Grabbed),
+            () if !is_tethered => Some(SubstepReason::Untethered),
+            () => None,
+        };
         let risk = match (feature::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.self_collision) {
             (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
             (Some((Sharpness::Edge, wanted)), _) => ContactRisk::Edge(wanted),
             (None, SelfCollision::Robust) => ContactRisk::Robust,
-            (None, _) if with_care => ContactRisk::Some,
+            (None, _) if some.is_some() => ContactRisk::Some,
             (None, _) => ContactRisk::None,
         };
         let (wanted, levels) = ctx.effort.of_step(risk, dt);
+        let (without_risk, _) = ctx.effort.of_step(ContactRisk::None, dt);
+        let reason = match ctx.method {
+            Method::Explicit => SubstepReason::Stability,
+            Method::Strands | Method::Xpbd if !ctx.effort.follows_time_step => SubstepReason::Fixed,
+            Method::Strands | Method::Xpbd if wanted == without_risk => SubstepReason::Strain,
+            Method::Strands | Method::Xpbd => SubstepReason::of_risk(risk, some.unwrap_or_default()),
+        };
         // Levels move what hangs on a body without its weight on the body.
-        let levels = if is_mounted { &[] } else { levels };
+        let levels = if is_on_body { &[] } else { levels };
         let (most, stability, levels) = match ctx.method {
             Method::Strands => (u32::MAX, Stability::unconditional(wanted), levels),
             Method::Xpbd => (u32::MAX, Stability::unconditional(wanted), &[][..]),
@@ -180,7 +199,7 @@ impl<'a> Plan<'a> {
             }
         };
         let substeps = stability.needed.min(most);
-        Some(Self { dt, is_near, longest_edge, levels, substeps, stability })
+        Some(Self { dt, is_near, longest_edge, levels, substeps, reason, stability })
     }
 }
 
@@ -197,6 +216,7 @@ pub(crate) struct Running<'a> {
     pub longest_edge: f32,
     dt: f32,
     substeps: u32,
+    reason: SubstepReason,
     /// Substeps from one renewal of the air's forces to the next.
     air_interval: u32,
     /// Whether the free motion of the coming substep is done.
@@ -219,6 +239,7 @@ impl<'a> Running<'a> {
         offset: Vec3A,
     ) -> Self {
         let Plan { dt, is_near, longest_edge, levels, stability, .. } = plan;
+        let reason = if plan.substeps < substeps { SubstepReason::OtherCloth } else { plan.reason };
         let h = dt / substeps as f32;
         let helpers = helpers(topology, ctx);
         imperfection::seed(particles, topology, ctx);
@@ -255,6 +276,7 @@ impl<'a> Running<'a> {
             longest_edge,
             dt,
             substeps,
+            reason,
             air_interval: ((1.0 / (AIR_RATE * h)) as u32).max(1),
             has_moved,
             is_finished: false,
@@ -326,7 +348,7 @@ impl<'a> Running<'a> {
 
     /// Hands the state back.
     fn end(self) -> StepReport {
-        let Self { particles, scratch, substep, substeps, contacts, touched, .. } = self;
+        let Self { particles, scratch, substep, substeps, reason, contacts, touched, .. } = self;
         let contacts = contacts + touched;
         let Scratch { lanes, steady_force, simd_level, .. } = scratch;
         match substep.helpers {
@@ -335,7 +357,7 @@ impl<'a> Running<'a> {
         }
         let steady_force = if substep.is_pushed { steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
         let Stability { needed: needed_substeps, scale: stiffness_scale, .. } = substep.stability;
-        StepReport { substeps, needed_substeps, stiffness_scale, contacts, steady_force }
+        StepReport { substeps, reason, needed_substeps, stiffness_scale, contacts, steady_force }
     }
 }
 

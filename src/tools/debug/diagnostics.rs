@@ -24,6 +24,8 @@ impl ClothDiagnosticsPlugin {
     pub const CLOTHS: DiagnosticPath = DiagnosticPath::const_new("cloth/cloths");
     /// Number of their particles.
     pub const PARTICLES: DiagnosticPath = DiagnosticPath::const_new("cloth/particles");
+    /// Substeps of the cloth that took most. [`ClothReport`] says why.
+    pub const SUBSTEPS: DiagnosticPath = DiagnosticPath::const_new("cloth/substeps");
     /// Number of contacts in the step's last substep: of particles with obstacles, and of
     /// triangles and edges with each other and with what is sharp.
     pub const CONTACTS: DiagnosticPath = DiagnosticPath::const_new("cloth/contacts");
@@ -34,6 +36,7 @@ impl Plugin for ClothDiagnosticsPlugin {
         app.register_diagnostic(Diagnostic::new(Self::STEP_TIME).with_suffix("ms"))
             .register_diagnostic(Diagnostic::new(Self::CLOTHS))
             .register_diagnostic(Diagnostic::new(Self::PARTICLES))
+            .register_diagnostic(Diagnostic::new(Self::SUBSTEPS))
             .register_diagnostic(Diagnostic::new(Self::CONTACTS));
     }
 
@@ -54,6 +57,10 @@ fn measure(mut diagnostics: Diagnostics, cloths: Query<(&ClothState, &ClothRepor
     diagnostics.add_measurement(&ClothDiagnosticsPlugin::CLOTHS, || ready().count() as f64);
     diagnostics.add_measurement(&ClothDiagnosticsPlugin::PARTICLES, || {
         ready().map(|(state, ..)| state.particle_count() as f64).sum()
+    });
+    diagnostics.add_measurement(&ClothDiagnosticsPlugin::SUBSTEPS, || {
+        let most = ready().filter_map(|(_, report, _)| report.latest()).map(|latest| latest.substeps).max();
+        f64::from(most.unwrap_or(0))
     });
     diagnostics.add_measurement(&ClothDiagnosticsPlugin::CONTACTS, || {
         ready().filter_map(|(_, report, _)| report.latest()).map(|latest| f64::from(latest.contacts)).sum()

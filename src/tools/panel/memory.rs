@@ -5,7 +5,10 @@ use std::collections::VecDeque;
 use bevy::{platform::collections::HashMap, prelude::*};
 
 use super::{ClothPanel, advice::Advice, aim::Aim, watch::Watch};
-use crate::state::{ClothReport, ClothStatus};
+use crate::{
+    solver::SubstepReason,
+    state::{ClothReport, ClothStatus},
+};
 
 /// Steps whose time is remembered.
 const STEPS: usize = 300;
@@ -44,6 +47,8 @@ pub(super) struct Readings {
     pub structure: String,
     /// Of the one that takes the most.
     pub substeps: u32,
+    /// Why they are so many.
+    pub substep_reason: SubstepReason,
     pub contacts: u32,
     pub largest_strain: f32,
     /// Over all cloths, by their particles.

@@ -35,9 +35,14 @@ const WEAVE: Naming = naming(
     "What strands find in the mesh: rows and columns, which they hold best, threads that go straight on from edge to edge, \
      or nothing but springs; and the coarse levels that it has, whether they are used or not.",
 );
-const SUBSTEPS: Naming =
-    naming("Substeps taken", "Substeps of the latest step: what the explicit solver needs, or what XPBD is told.");
-const CONTACTS: Naming = naming("Contacts", "Particles that touch an obstacle, each counted once an obstacle.");
+const SUBSTEPS: Naming = naming(
+    "Substeps taken",
+    "Substeps of the latest step, and why so many. Of several cloths, those of the one that took most.",
+);
+const CONTACTS: Naming = naming(
+    "Contacts",
+    "Contacts at the end of the latest step: particles at obstacles, and triangles and edges at each other and at what is sharp.",
+);
 const LARGEST_STRAIN: Naming = naming(
     "Largest strain",
     "Stretch of the thread that is stretched the most, over its length. A few percent can't be seen.",
@@ -56,7 +61,7 @@ fn show_cost(ui: &mut Ui, readings: &Readings, step_times: &VecDeque<f32>) {
     reading(ui, PARTICLES, readings.particles.to_string());
     reading(ui, SPRINGS, readings.springs.to_string());
     reading(ui, WEAVE, readings.structure.clone());
-    reading(ui, SUBSTEPS, readings.substeps.to_string());
+    reading(ui, SUBSTEPS, format!("{}, {}", readings.substeps, readings.substep_reason));
     reading(ui, CONTACTS, readings.contacts.to_string());
 }
 

@@ -95,14 +95,17 @@ fn observe(world: &World, cloth: Entity) -> Option<Observed<'_>> {
 /// Adds the numbers of one cloth. Gives its kinetic energy, J.
 fn add(readings: &mut Readings, Observed { state, report, .. }: &Observed, strain: Strain, gravity: Vec3) -> f32 {
     let energy = state.energy(gravity);
-    let (substeps, contacts) = report.latest().map_or((0, 0), |latest| (latest.substeps, latest.contacts));
+    if let Some(latest) = report.latest() {
+        if latest.substeps > readings.substeps {
+            (readings.substeps, readings.substep_reason) = (latest.substeps, latest.reason);
+        }
+        readings.contacts += latest.contacts;
+    }
     readings.particles += state.particle_count();
     readings.springs += state.topology().springs.len();
     let structure = structure(state);
     let is_like_others = readings.structure.is_empty() || readings.structure == structure;
     readings.structure = if is_like_others { structure } else { "various".into() };
-    readings.substeps = readings.substeps.max(substeps);
-    readings.contacts += contacts;
     readings.largest_strain = readings.largest_strain.max(strain.largest);
     readings.mean_strain += strain.mean * state.particle_count() as f32;
     readings.kinetic += energy.kinetic;

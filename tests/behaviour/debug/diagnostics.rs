@@ -50,6 +50,8 @@ fn the_latest_step_is_measured() {
     assert!(contacts > 50 && time > 0.0);
     assert_eq!(value(&app, ClothDiagnosticsPlugin::CONTACTS), f64::from(contacts));
     assert_eq!(value(&app, ClothDiagnosticsPlugin::STEP_TIME), time);
+    let most = cloths.iter().map(|&cloth| report(&app, cloth).substeps).max().unwrap();
+    assert_eq!(value(&app, ClothDiagnosticsPlugin::SUBSTEPS), f64::from(most));
     assert_eq!(value(&app, ClothDiagnosticsPlugin::CLOTHS), 2.0);
     assert_eq!(value(&app, ClothDiagnosticsPlugin::PARTICLES), 128.0);
     assert_eq!(diagnostic(&app, ClothDiagnosticsPlugin::STEP_TIME).suffix, "ms");
