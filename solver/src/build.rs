@@ -28,7 +28,7 @@ mod strand_packs;
 pub mod stretch;
 mod threads;
 mod topology;
-mod weld;
+pub mod weld;
 
 pub use error::MeshError;
 pub use geodesic::{grab_tethers, tethers};
