@@ -1,15 +1,15 @@
 //! The force of the air on triangles.
 
-use bevy::{
-    math::{DVec3, Isometry3d, Vec3A},
-    prelude::*,
-};
-use bevy_drape::{
-    prelude::{ClothGrid, ClothSprings},
-    solver::{Ellipsoid, Gusts, Material, WindRegion, WindSource},
-};
+use bevy_math::{DVec3, Isometry3d, Quat, Vec3, Vec3A};
+use drape_solver::{Ellipsoid, Gusts, Material, WindRegion, WindSource};
 
-use crate::bench_bed::{Bed, GRAVITY, bits, springs_in_air};
+use crate::{
+    bench_bed::{Bed, GRAVITY, bits},
+    fixtures::{
+        material::{Springs, springs_in_air},
+        mesh::{Grid, turned_over},
+    },
+};
 
 const CALM: Gusts = Gusts { strength: 0.0, period: 4.0, turbulence: 0.0, eddy_size: 1.0, seed: 7 };
 
@@ -20,7 +20,7 @@ fn wind(velocity: Vec3A) -> WindSource {
 
 /// A heavy square metre that lies in the air without gravity, all of it free.
 fn sheet(drag: f32, lift: f32) -> Bed {
-    let material = Material { density: 1.0, damping: 0.0, drag, lift, ..springs_in_air(ClothSprings::default()) };
+    let material = Material { density: 1.0, damping: 0.0, drag, lift, ..springs_in_air(Springs::default()) };
     Bed { gravity: Vec3A::ZERO, ..Bed::lying(5, material) }
 }
 
@@ -60,7 +60,7 @@ fn a_slanting_wind_drags_along_itself_and_lifts_across() {
 
 #[test]
 fn the_side_that_triangles_face_makes_no_difference() {
-    let turned = Mesh::from(ClothGrid::new(1.0, 1.0, 5, 5).lying()).with_inverted_winding().unwrap();
+    let turned = turned_over(Grid::new(1.0, 1.0, 5, 5).lying().into());
     let bed = Bed { gravity: Vec3A::ZERO, ..Bed::new(turned, sheet(1.0, 0.5).material) };
     let velocity = Vec3A::new(2.0, 3.0, -1.0);
     assert_near(force(bed, velocity), force(sheet(1.0, 0.5), velocity));
@@ -68,8 +68,7 @@ fn the_side_that_triangles_face_makes_no_difference() {
 
 #[test]
 fn a_sheet_falling_flat_reaches_its_terminal_speed() {
-    let material =
-        Material { density: 0.1, damping: 0.0, drag: 1.2, lift: 0.0, ..springs_in_air(ClothSprings::default()) };
+    let material = Material { density: 0.1, damping: 0.0, drag: 1.2, lift: 0.0, ..springs_in_air(Springs::default()) };
     let mut bed = Bed::lying(5, material);
     bed.run(3.0);
     let expected = (2.0 * 0.1 * GRAVITY / (1.225 * 1.2)).sqrt();
@@ -79,7 +78,7 @@ fn a_sheet_falling_flat_reaches_its_terminal_speed() {
 
 #[test]
 fn the_lightest_sheet_in_a_hurricane_takes_its_speed_and_no_more() {
-    let material = Material { density: 0.005, drag: 2.0, lift: 1.0, ..springs_in_air(ClothSprings::default()) };
+    let material = Material { density: 0.005, drag: 2.0, lift: 1.0, ..springs_in_air(Springs::default()) };
     let mut bed = Bed { gravity: Vec3A::ZERO, ..Bed::lying(5, material) };
     bed.winds = vec![wind(Vec3A::new(10.0, 60.0, 0.0))];
     for _ in 0..60 {
@@ -158,7 +157,7 @@ fn a_cloth_that_grows_through_the_eddies_feels_no_jump() {
     let gusts = Gusts { turbulence: 0.3, ..CALM };
     let push = |i: u32| {
         let side = 0.9 + 0.002 * i as f32;
-        let grid = ClothGrid::new(side, side, 5, 5).lying();
+        let grid = Grid::new(side, side, 5, 5).lying();
         let mut bed = Bed { gravity: Vec3A::ZERO, ..Bed::new(grid, sheet(1.0, 0.0).material) };
         bed.winds = vec![WindSource { gusts, ..wind(Vec3A::Y * 5.0) }];
         bed.winds[0].advance(3.0);

@@ -2,19 +2,14 @@
 
 use std::sync::Arc;
 
-use bevy::{
-    math::{Mat3A, Vec3A},
-    prelude::Mesh,
-    tasks::TaskPool,
+use bevy_math::Vec3A;
+use bevy_tasks::TaskPool;
+use drape_solver::{
+    AttachedPin, BodyAttachment, Grab, Material, Member, Method, Obstacle, Particles, PinMotion, Scratch,
+    SelfCollision, SourceMesh, StepContext, StepReport, SubstepPolicy, Tethers, Topology, WindSource, build, step,
 };
-use bevy_drape::{
-    build,
-    prelude::{ClothGrid, ClothSprings, Fabric},
-    solver::{
-        AttachedPin, BodyAttachment, Elasticity, Grab, Material, Member, Method, Obstacle, Particles, PinMotion,
-        Scratch, SelfCollision, StepContext, StepReport, SubstepPolicy, Tethers, Topology, WindSource, step,
-    },
-};
+
+use crate::fixtures::mesh::{Grid, topology};
 
 pub const GRAVITY: f32 = 9.81;
 
@@ -52,27 +47,10 @@ pub struct Bed {
     pub scratch: Scratch,
 }
 
-/// A fabric in a vacuum without damping, as thin as can be: what is on paper.
-pub fn bare(fabric: Fabric) -> Material {
-    let material = fabric.material().expect("valid constants");
-    Material { friction: material.friction, ..Material::bare(material.density, material.elasticity) }
-}
-
-/// Plain springs in a vacuum without damping, as thin as can be: what is on paper. They weigh 0.2 kg/m².
-pub fn springs(springs: ClothSprings) -> Material {
-    let elasticity = Elasticity::Springs(springs.constants().expect("valid constants"));
-    Material { friction: 0.5, ..Material::bare(0.2, elasticity) }
-}
-
-/// Plain springs as a game has them: in air, with damping, and 5 mm off obstacles.
-pub fn springs_in_air(constants: ClothSprings) -> Material {
-    Material { damping: 0.2, thickness: 0.005, drag: 1.2, lift: 0.4, ..springs(constants) }
-}
-
 impl Bed {
     /// The particles of `mesh`, free and at rest.
-    pub fn new(mesh: impl Into<Mesh>, material: Material) -> Self {
-        let topology = build::topology_of(&mesh.into(), Mat3A::IDENTITY).expect("a mesh with an area");
+    pub fn new(mesh: impl Into<SourceMesh>, material: Material) -> Self {
+        let topology = topology(mesh);
         let rest = topology.rest.iter().copied().map(Vec3A::from).collect();
         Self {
             particles: Particles::at_rest(rest, &topology, &material),
@@ -102,7 +80,7 @@ impl Bed {
 
     /// A square metre, lying at height 0, of `n` x `n` particles.
     pub fn lying(n: u32, material: Material) -> Self {
-        Self::new(ClothGrid::new(1.0, 1.0, n, n).lying(), material)
+        Self::new(Grid::new(1.0, 1.0, n, n).lying(), material)
     }
 
     /// Fixes particles where they are.

@@ -1,19 +1,15 @@
 //! Sheets bend as a plate of their rigidity does.
 
-use bevy::{
-    math::{
-        Vec3A,
-        ops::{cos, sin},
-    },
-    mesh::VertexAttributeValues,
-    prelude::*,
-};
-use bevy_drape::{
-    prelude::{ClothGrid, Fabric},
-    solver::{Bend, Material, Method, measure::energy},
-};
+use bevy_math::{Vec3, Vec3A, ops};
+use drape_solver::{Bend, Material, Method, measure::energy};
 
-use crate::bench_bed::{self, Bed, GRAVITY, bare};
+use crate::{
+    bench_bed::{self, Bed, GRAVITY},
+    fixtures::{
+        material::{Fabric, bare},
+        mesh::{Grid, shaped},
+    },
+};
 
 /// How far the end of a strip hangs below the edge that it sticks out of, over its length, if (B / (ρ g))^(1/3) is `length`
 /// of it.
@@ -53,7 +49,7 @@ fn droop(length: f64) -> f64 {
 /// its halves.
 fn measured(fabric: Fabric, length: f32, cells: u32, method: Method, substeps: u32) -> f32 {
     let cell = length / (cells as f32 + 0.5);
-    let grid = ClothGrid::new(4.0 * cell, cell * (cells + 1) as f32, 5, cells + 2);
+    let grid = Grid::new(4.0 * cell, cell * (cells + 1) as f32, 5, cells + 2);
     let material = Material { damping: 12.0, ..bare(fabric) };
     let bed = Bed::new(grid.lying(), material).pinned(0..10);
     let mut bed = Bed { method, fluid_density: 0.0, ..bed }.with_substeps(substeps);
@@ -90,22 +86,10 @@ fn other_methods_bend_as_strands_do() {
     }
 }
 
-/// A grid of which every point is moved.
-fn shaped(grid: ClothGrid, place: impl Fn(Vec3) -> Vec3) -> Mesh {
-    let mut mesh = Mesh::from(grid);
-    let Some(VertexAttributeValues::Float32x3(places)) = mesh.attribute_mut(Mesh::ATTRIBUTE_POSITION) else {
-        unreachable!("a grid has positions")
-    };
-    for at in places {
-        *at = place(Vec3::from(*at)).to_array();
-    }
-    mesh
-}
-
 #[test]
 fn a_plate_bends_as_easily_in_any_direction() {
     let fabric = Fabric { bending_rigidity: 1e-3, ..Fabric::default() };
-    let grid = ClothGrid::new(0.4, 0.4, 41, 41).lying();
+    let grid = Grid::new(0.4, 0.4, 41, 41).lying();
     let flat = Bed::new(grid, bare(fabric));
     for degrees in [0.0_f32, 20.0, 45.0, 90.0] {
         let (curvature, direction) = (0.1, Vec3A::X.rotate_y(degrees.to_radians()));
@@ -129,15 +113,16 @@ fn a_plate_bends_as_easily_in_any_direction() {
 
 #[test]
 fn what_is_curved_at_rest_keeps_its_form() {
-    let roll = |radius: f32| move |p: Vec3| Vec3::new(radius * sin(p.x / radius), p.y, radius * cos(p.x / radius));
+    let roll =
+        |radius: f32| move |p: Vec3| Vec3::new(radius * ops::sin(p.x / radius), p.y, radius * ops::cos(p.x / radius));
     let fabric = Fabric { bending_rigidity: 1e-3, ..Fabric::default() };
     for mesh in [
-        shaped(ClothGrid::new(0.4, 0.2, 37, 19), roll(0.15)),
-        shaped(ClothGrid::new(0.4, 0.2, 37, 19), |p| roll(0.15)(Vec3::new(p.y, p.x, 0.0))),
+        shaped(Grid::new(0.4, 0.2, 37, 19), roll(0.15)),
+        shaped(Grid::new(0.4, 0.2, 37, 19), |p| roll(0.15)(Vec3::new(p.y, p.x, 0.0))),
         // A tube: its last column is its first.
-        shaped(ClothGrid::new(core::f32::consts::TAU * 0.1, 0.2, 33, 17), roll(0.1)),
+        shaped(Grid::new(core::f32::consts::TAU * 0.1, 0.2, 33, 17), roll(0.1)),
         // Pleats.
-        shaped(ClothGrid::new(0.4, 0.2, 65, 17), |p| Vec3::new(p.x, p.y, 0.01 * sin(p.x * 60.0))),
+        shaped(Grid::new(0.4, 0.2, 65, 17), |p| Vec3::new(p.x, p.y, 0.01 * ops::sin(p.x * 60.0))),
     ] {
         let bed = Bed::new(mesh.clone(), bare(fabric.clone()));
         assert!(bed.topology.lattice.as_ref().is_some_and(|lattice| lattice.curl.is_some()));

@@ -1,20 +1,20 @@
 //! Cloth and the bodies that it pushes.
 
-use bevy::{
-    math::{Isometry3d, Mat3A, Vec3A},
-    prelude::{Cuboid, Quat, Sphere, Vec3},
+use bevy_math::{
+    Isometry3d, Mat3A, Quat, Vec3, Vec3A,
+    primitives::{Cuboid, Sphere},
 };
-use bevy_drape::{
-    prelude::ClothSprings,
-    solver::{Body, Material, Method, Obstacle, Solid},
-};
+use drape_solver::{Body, Material, Method, Obstacle, Solid};
 
-use crate::bench_bed::{Bed, STABLE, springs};
+use crate::{
+    bench_bed::{Bed, STABLE},
+    fixtures::material::{Springs, springs},
+};
 
 const FRAME: f32 = 1.0 / 60.0;
 
 fn cotton(friction: f32) -> Material {
-    Material { friction, thickness: 0.003, ..springs(ClothSprings::default()) }
+    Material { friction, thickness: 0.003, ..springs(Springs::default()) }
 }
 
 /// A body as a physics engine has it.

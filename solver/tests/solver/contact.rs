@@ -1,18 +1,18 @@
 //! Cloth and obstacles.
 
-use bevy::{
-    math::{Dir3, Isometry3d, Vec3A, ops, primitives::InfinitePlane3d},
-    prelude::{Capsule3d, Cone, Cuboid, Cylinder, Quat, Sphere, Vec3, default},
+use bevy_math::{
+    Dir3, Isometry3d, Quat, Vec3, Vec3A, ops,
+    primitives::{Capsule3d, Cone, Cuboid, Cylinder, InfinitePlane3d, Sphere},
 };
-use bevy_drape::{
-    prelude::{ClothGrip, ClothSprings},
-    solver::{Ellipsoid, Material, Method, Obstacle, Shape, Solid, TaperedCapsule},
-};
+use drape_solver::{Ellipsoid, Material, Method, Obstacle, Shape, Solid, TaperedCapsule};
 use proptest::prelude::*;
 
 use crate::{
-    bench_bed::{Bed, GRAVITY, STABLE, bits, springs},
-    grabs::hand,
+    bench_bed::{Bed, GRAVITY, STABLE, bits},
+    fixtures::{
+        hand::{Grip, hand},
+        material::{Springs, springs},
+    },
 };
 
 fn still(shape: Solid, place: Vec3) -> Obstacle {
@@ -21,7 +21,7 @@ fn still(shape: Solid, place: Vec3) -> Obstacle {
 }
 
 fn cotton(friction: f32, thickness: f32) -> Material {
-    Material { friction, thickness, ..springs(ClothSprings::default()) }
+    Material { friction, thickness, ..springs(Springs::default()) }
 }
 
 /// How deep the deepest particle is below the surface that it should keep to, m.
@@ -281,7 +281,7 @@ fn a_hand_takes_no_resting_cloth_through_a_board_in_one_step() {
     for method in STABLE {
         let mut bed = Bed { gravity: Vec3A::ZERO, ..sheet(method, 16, cotton(0.5, 0.0)) };
         bed.obstacles = vec![still(Solid::Cuboid(Cuboid::new(4.0, 0.02, 4.0)), Vec3::NEG_Y * 0.05)];
-        let grip = ClothGrip { max_force: 1000.0, ..default() };
+        let grip = Grip { max_force: 1000.0, ..Grip::default() };
         bed.grabs = vec![hand(&bed, 200, [0.4, 0.3, 0.3], grip)];
         // As fast as a pointer leads it.
         bed.grabs[0].end += Vec3A::NEG_Y * (grip.max_speed / 60.0);
@@ -296,7 +296,7 @@ fn a_hand_takes_no_resting_cloth_through_a_board_in_one_step() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 80, failure_persistence: None, ..default() })]
+    #![proptest_config(ProptestConfig { cases: 80, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn no_particle_ends_a_step_inside_an_obstacle(

@@ -1,14 +1,17 @@
 //! Three solvers, one set of constants: all come to the same motion as their steps shrink.
 
-use bevy::math::ops;
-use bevy_drape::{prelude::ClothSprings, solver::Method};
+use bevy_math::ops;
+use drape_solver::Method;
 
-use crate::bench_bed::{Bed, STABLE, rms, springs};
+use crate::{
+    bench_bed::{Bed, STABLE, rms},
+    fixtures::material::{Springs, springs},
+};
 
 /// The standard cloth, rippled and held by two corners.
 fn held(method: Method) -> Bed {
     let n = 32;
-    let mut bed = Bed { method, ..Bed::lying(n, springs(ClothSprings::default())).pinned([0, n - 1]) };
+    let mut bed = Bed { method, ..Bed::lying(n, springs(Springs::default())).pinned([0, n - 1]) };
     for position in &mut bed.particles.position {
         let wave = |x: f32| ops::sin(core::f32::consts::TAU * x);
         position.y = 0.001 * wave(position.x) * wave(position.z + 0.25);

@@ -2,18 +2,16 @@
 
 use std::sync::Arc;
 
-use bevy::{
-    math::{Isometry3d, Vec3A, primitives::InfinitePlane3d},
-    prelude::{Capsule3d, Cone, Cuboid, Cylinder, Quat, Sphere, Vec3, default},
+use bevy_math::{
+    Isometry3d, Quat, Vec3, Vec3A,
+    primitives::{Capsule3d, Cone, Cuboid, Cylinder, InfinitePlane3d, Sphere},
 };
-use bevy_drape::{
-    prelude::ClothSprings,
-    solver::{Ellipsoid, Material, MeshShape, Method, Obstacle, Shape, Solid, TaperedCapsule, TriangleMesh},
-};
+use drape_solver::{Ellipsoid, Material, MeshShape, Method, Obstacle, Shape, Solid, TaperedCapsule, TriangleMesh};
 use proptest::{prelude::*, test_runner::RngSeed};
 
 use crate::{
-    bench_bed::{Bed, STABLE, springs},
+    bench_bed::{Bed, STABLE},
+    fixtures::material::{Springs, springs},
     meshes::{ball, cuboid},
 };
 
@@ -128,7 +126,7 @@ struct Sheet {
 impl Sheet {
     fn bed(self) -> Bed {
         let Self { method, thickness, friction, pins, substeps } = self;
-        let material = Material { friction, thickness, ..springs(ClothSprings::default()) };
+        let material = Material { friction, thickness, ..springs(Springs::default()) };
         let bed = Bed::lying(12, material).pinned(pins).like_a_game(method);
         match substeps {
             Some(substeps) => bed.with_substeps(substeps),
@@ -227,7 +225,7 @@ proptest! {
         cases: 150,
         failure_persistence: None,
         rng_seed: RngSeed::Fixed(1),
-        ..default()
+        ..ProptestConfig::default()
     })]
 
     #[test]

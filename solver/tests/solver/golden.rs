@@ -6,8 +6,8 @@
 
 use std::sync::Arc;
 
-use bevy::tasks::TaskPoolBuilder;
-use bevy_drape::solver::{Method, SelfCollision, SimdLevel, step_together};
+use bevy_tasks::TaskPoolBuilder;
+use drape_solver::{Method, SelfCollision, SimdLevel, step_together};
 
 use crate::{
     bench_bed::{ALL, STABLE, bits, digest},

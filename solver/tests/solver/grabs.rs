@@ -1,43 +1,28 @@
 //! A cloth that is held and pulled by hand.
 
-use bevy::{
-    math::{Isometry3d, Vec3A},
-    prelude::*,
+use bevy_math::{
+    Isometry3d, Vec3A,
+    primitives::{Cuboid, Sphere},
 };
-use bevy_drape::{
-    build,
-    prelude::{ClothGrid, ClothGrip, ClothSprings},
-    solver::{Grab, Material, Method, Obstacle, Solid, Tether, Tethers, measure},
-};
+use drape_solver::{Grab, Material, Method, Obstacle, Solid, Tether, Tethers, measure};
 
-use crate::bench_bed::{ALL, Bed, STABLE, springs_in_air};
+use crate::{
+    bench_bed::{ALL, Bed, STABLE},
+    fixtures::{
+        hand::{Grip, hand},
+        material::{Springs, springs_in_air},
+        mesh::Grid,
+    },
+};
 
 const STEP: f32 = 1.0 / 60.0;
 
 fn cotton() -> Material {
-    springs_in_air(ClothSprings::default())
-}
-
-/// A hand at `weights` of a triangle.
-pub fn hand(bed: &Bed, triangle: usize, weights: [f32; 3], grip: ClothGrip) -> Grab {
-    let particles = bed.topology.triangles[triangle];
-    let corners = particles.map(|i| bed.particles.position[i as usize]);
-    let place = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
-    Grab {
-        particles,
-        weights,
-        start: place,
-        end: place,
-        stiffness: grip.stiffness,
-        damping: grip.damping,
-        max_force: grip.max_force,
-        mass: grip.mass,
-        tethers: build::grab_tethers(&bed.topology, particles, weights).into(),
-    }
+    springs_in_air(Springs::default())
 }
 
 /// A bed with a hand in the middle of a triangle near its centre.
-fn held(mut bed: Bed, grip: ClothGrip) -> Bed {
+fn held(mut bed: Bed, grip: Grip) -> Bed {
     let triangle = bed.topology.triangles.len() / 2 + (bed.topology.triangles.len() as f32).sqrt() as usize / 2;
     bed.grabs = vec![hand(&bed, triangle, [0.5, 0.2, 0.3], grip)];
     bed
@@ -54,7 +39,7 @@ fn lead(bed: &mut Bed, target: Vec3A, seconds: f32, mut look: impl FnMut(&Bed)) 
     for _ in 0..(seconds / STEP).round() as u32 {
         let grab = &mut bed.grabs[0];
         grab.start = grab.end;
-        grab.end = grab.start.move_towards(target, ClothGrip::default().max_speed * STEP);
+        grab.end = grab.start.move_towards(target, Grip::default().max_speed * STEP);
         bed.step(STEP);
         look(bed);
     }
@@ -68,7 +53,7 @@ fn sheet(method: Method, n: u32) -> Bed {
 /// A square metre that hangs by two corners and has come to rest.
 fn hanging(method: Method, n: u32) -> Bed {
     let corners = [0, n - 1];
-    let bed = Bed::new(ClothGrid::new(1.0, 1.0, n, n), cotton()).pinned(corners).tethered(&corners);
+    let bed = Bed::new(Grid::new(1.0, 1.0, n, n), cotton()).pinned(corners).tethered(&corners);
     let mut bed = bed.like_a_game(method);
     bed.run(1.0);
     bed
@@ -77,7 +62,7 @@ fn hanging(method: Method, n: u32) -> Bed {
 #[test]
 fn a_held_point_goes_where_the_hand_goes() {
     for method in ALL {
-        let mut bed = held(hanging(method, 17), ClothGrip::default());
+        let mut bed = held(hanging(method, 17), Grip::default());
         let target = point(&bed) + Vec3A::new(0.05, 0.15, 0.25);
         lead(&mut bed, target, 1.0, |_| {});
         let off = point(&bed).distance(target);
@@ -90,7 +75,7 @@ fn a_hand_lifts_a_cloth_by_a_point_and_no_farther_than_its_force_allows() {
     // The cloth weighs 2 N, the hand itself 1 N.
     let cases = STABLE.into_iter().flat_map(|method| [(method, 20.0, true), (method, 1.0, false)]);
     for (method, max_force, is_lifted) in cases {
-        let mut bed = held(sheet(method, 32), ClothGrip { max_force, ..default() });
+        let mut bed = held(sheet(method, 32), Grip { max_force, ..Grip::default() });
         let target = point(&bed) + Vec3A::Y;
         lead(&mut bed, target, 2.0, |_| {});
         let off = point(&bed).distance(target);
@@ -103,7 +88,7 @@ fn a_hand_lifts_a_cloth_by_a_point_and_no_farther_than_its_force_allows() {
 fn a_jerk_of_a_metre_neither_tears_nor_throws_the_cloth() {
     let mut failures = Vec::new();
     for (method, n) in STABLE.into_iter().flat_map(|method| [(method, 32), (method, 64)]) {
-        let mut bed = held(hanging(method, n), ClothGrip::default());
+        let mut bed = held(hanging(method, n), Grip::default());
         let start = point(&bed);
         let tethers: Vec<Tether> = bed.tethers.iter().flat_map(Tethers::iter).collect();
         let (mut largest, mut mean, mut excess, mut speed) = (0.0_f32, 0.0_f32, 0.0_f32, 0.0_f32);
@@ -147,7 +132,7 @@ fn a_hand_pulls_no_cloth_into_an_obstacle() {
         bed.particles.position.iter_mut().for_each(|p| p.y += 0.25);
         bed.obstacles = vec![Obstacle::still(shape, place)];
         bed.run(1.0);
-        let mut bed = held(bed, ClothGrip::default());
+        let mut bed = held(bed, Grip::default());
         lead(&mut bed, Vec3A::NEG_Y, 1.0, |bed| {
             let deepest = bed.particles.position.iter().map(|&p| shape.surface(p).distance).fold(f32::MAX, f32::min);
             assert!(deepest > 0.0, "{method:?}, {shape:?}: {deepest} m");
@@ -163,7 +148,7 @@ fn what_is_let_go_keeps_its_speed() {
     for method in STABLE {
         let mut bed = sheet(method, 16);
         bed.gravity = Vec3A::ZERO;
-        let mut bed = held(bed, ClothGrip { max_force: 1000.0, ..default() });
+        let mut bed = held(bed, Grip { max_force: 1000.0, ..Grip::default() });
         for _ in 0..30 {
             let grab = &mut bed.grabs[0];
             (grab.start, grab.end) = (grab.end, grab.end + Vec3A::Y * 2.0 * STEP);
@@ -190,7 +175,7 @@ fn what_is_let_go_keeps_its_speed() {
 #[test]
 fn tethers_to_a_held_point_are_as_long_as_the_straight_line_on_a_flat_grid() {
     let bed = Bed::lying(33, cotton());
-    let grab = hand(&bed, 999, [0.2, 0.3, 0.5], ClothGrip::default());
+    let grab = hand(&bed, 999, [0.2, 0.3, 0.5], Grip::default());
     assert_eq!(grab.tethers.len(), 33 * 33 - 3);
     for tether in &*grab.tethers {
         let straight = bed.particles.position[tether.particle as usize].distance(grab.start);

@@ -1,14 +1,12 @@
 //! Which springs run along the warp.
 
-use bevy::{math::Mat3A, mesh::VertexAttributeValues, prelude::*};
-use bevy_drape::{
-    build,
-    prelude::{ATTRIBUTE_WARP, ClothGrid},
-    solver::{Grain, Spring, SpringKind, Topology},
-};
+use bevy_math::{Mat3A, UVec2, Vec2, Vec2Swizzles, Vec3};
+use drape_solver::{Grain, SourceMesh, Spring, SpringKind, Topology};
+
+use crate::fixtures::mesh::{Grid, scaled_topology};
 
 /// 7 x 5 cells, each of 0.1 m.
-const GRID: ClothGrid = ClothGrid { size: Vec2::new(0.7, 0.5), particles: UVec2::new(8, 6), lying: false };
+const GRID: Grid = Grid { size: Vec2::new(0.7, 0.5), particles: UVec2::new(8, 6), is_lying: false };
 
 fn way(topology: &Topology, spring: &Spring) -> Vec3 {
     (topology.rest[spring.b as usize] - topology.rest[spring.a as usize]).normalize()
@@ -16,8 +14,8 @@ fn way(topology: &Topology, spring: &Spring) -> Vec3 {
 
 /// Structural springs along `axis` are warp and the others weft, with the shares that springs of square cells have.
 #[track_caller]
-fn assert_warp_along(mesh: &Mesh, to_world: Mat3A, axis: Vec3) {
-    let topology = build::topology_of(mesh, to_world).expect("a grid is a mesh with an area");
+fn assert_warp_along(mesh: &SourceMesh, to_world: Mat3A, axis: Vec3) {
+    let topology = scaled_topology(mesh.clone(), to_world);
     let mut counts = [0; 2];
     for spring in topology.springs_of(SpringKind::Structural) {
         let is_along = way(&topology, spring).dot(axis).abs() > 0.99;
@@ -36,15 +34,13 @@ fn assert_warp_along(mesh: &Mesh, to_world: Mat3A, axis: Vec3) {
 }
 
 /// The mesh with other UVs.
-fn with_uvs(mesh: Mesh, change: impl Fn(Vec2) -> Vec2) -> Mesh {
-    let Some(VertexAttributeValues::Float32x2(uvs)) = mesh.attribute(Mesh::ATTRIBUTE_UV_0) else { panic!("no UVs") };
-    let uvs: Vec<[f32; 2]> = uvs.iter().map(|&uv| change(Vec2::from(uv)).to_array()).collect();
-    mesh.with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
+fn with_uvs(mut mesh: SourceMesh, change: impl Fn(Vec2) -> Vec2) -> SourceMesh {
+    mesh.uvs.iter_mut().flatten().for_each(|uv| *uv = change(*uv));
+    mesh
 }
 
-fn with_warp(mesh: Mesh, warp: Vec3) -> Mesh {
-    let count = mesh.count_vertices();
-    mesh.with_inserted_attribute(ATTRIBUTE_WARP, vec![warp.to_array(); count])
+fn with_warp(mesh: SourceMesh, warp: Vec3) -> SourceMesh {
+    SourceMesh { warp: Some(vec![warp; mesh.positions.len()]), ..mesh }
 }
 
 #[test]
@@ -72,7 +68,7 @@ fn the_attribute_says_otherwise() {
 
 #[test]
 fn without_either_it_runs_along_the_meshs_own_axis() {
-    let bare = |grid: ClothGrid| Mesh::from(grid).with_removed_attribute(Mesh::ATTRIBUTE_UV_0);
+    let bare = |grid: Grid| SourceMesh { uvs: None, ..grid.into() };
     assert_warp_along(&bare(GRID), Mat3A::IDENTITY, Vec3::Y);
     assert_warp_along(&bare(GRID.lying()), Mat3A::IDENTITY, Vec3::Z);
     let one_place = with_uvs(GRID.into(), |_| Vec2::splat(0.5));

@@ -2,28 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use bevy::{
-    asset::RenderAssetUsages,
-    math::{Mat3A, ops},
-    mesh::{Indices, PrimitiveTopology},
-    prelude::*,
-};
-use bevy_drape::{
-    build::{particles_of_vertices, topology_of},
-    prelude::ClothGrid,
-    solver::{SpringKind, Topology},
-};
+use bevy_math::{Mat3A, Vec3, ops};
+use drape_solver::{SourceMesh, SpringKind, Topology, build};
 use fastrand::Rng;
 
-pub fn topology(mesh: impl Into<Mesh>) -> Topology {
-    topology_of(&mesh.into(), Mat3A::IDENTITY).expect("a mesh with an area")
-}
-
-pub fn assemble(positions: Vec<Vec3>, triangles: &[[u32; 3]]) -> Mesh {
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-        .with_inserted_indices(Indices::U32(triangles.as_flattened().to_vec()))
-}
+use crate::fixtures::mesh::{Grid, assemble, both, fan, icosphere, shaped, topology, triangle};
 
 /// Rows and columns of the lattice, if there is one, the fewer first.
 fn sides(topology: &Topology) -> Option<[usize; 2]> {
@@ -88,7 +71,7 @@ fn assert_shared_out(topology: &Topology) {
 #[test]
 fn a_grid_of_any_size_is_a_lattice_with_all_its_springs() {
     for (columns, rows) in [(2, 2), (3, 50), (50, 3), (33, 20), (2, 9), (9, 2), (8, 8), (7, 17), (64, 5)] {
-        let grid = ClothGrid::new(1.5, 1.0, columns, rows);
+        let grid = Grid::new(1.5, 1.0, columns, rows);
         for grid in [grid, grid.lying()] {
             let topology = topology(grid);
             let lattice = topology.lattice.as_ref().unwrap_or_else(|| panic!("{columns} x {rows}"));
@@ -146,13 +129,12 @@ fn a_grid_in_any_order_of_vertices_is_a_lattice() {
             triangle.rotate_left(rng.usize(0..3));
         }
         let mesh = assemble(shuffled.clone(), &triangles);
-        let topology = topology(mesh.clone());
+        let (welded, topology) = build(&mesh, Mat3A::IDENTITY).expect("a mesh with an area");
         let expected = [rows.min(columns) as usize, rows.max(columns) as usize];
         assert_eq!(sides(&topology), Some(expected), "{columns} x {rows}, seed {seed}");
         assert_shared_out(&topology);
-        let particles = particles_of_vertices(&mesh, Mat3A::IDENTITY).expect("a mesh with an area");
-        for (particle, place) in particles.into_iter().zip(shuffled) {
-            assert_eq!(topology.rest[particle.expect("a particle") as usize], place);
+        for (particle, place) in welded.particle_of_vertex.into_iter().zip(shuffled) {
+            assert_eq!(topology.rest[particle as usize], place);
         }
     }
 }
@@ -166,7 +148,7 @@ fn round(i: u32, around: u32, is_flat: bool) -> Vec3 {
     Vec3::new(out * cos, if is_flat { 0.0 } else { -0.05 * ring as f32 }, out * sin)
 }
 
-fn tube(around: u32, rings: u32, is_flat: bool) -> Mesh {
+fn tube(around: u32, rings: u32, is_flat: bool) -> SourceMesh {
     let cells = (0..rings - 1).flat_map(|ring| (0..around).map(move |column| (ring, column)));
     let triangles: Vec<[u32; 3]> = cells
         .flat_map(|(ring, column)| {
@@ -196,7 +178,7 @@ fn an_open_tube_is_a_lattice_of_rings() {
 }
 
 /// Equilateral triangles with a side of 1 m in `n` rows of `n` particles, lying.
-pub fn hexagons(n: u32) -> Mesh {
+pub fn hexagons(n: u32) -> SourceMesh {
     let place = |i: u32| {
         let (row, column) = ((i / n) as f32, (i % n) as f32);
         Vec3::new(column + 0.5 * (row % 2.0), 0.0, row * 0.75_f32.sqrt())
@@ -213,7 +195,7 @@ pub fn hexagons(n: u32) -> Mesh {
 
 /// A square metre of so many points a side, moved at random inside, joined by Delaunay's triangulation. The first two
 /// are corners.
-pub fn strewn(side: u32) -> Mesh {
+pub fn strewn(side: u32) -> SourceMesh {
     let mut rng = Rng::with_seed(3);
     let cell = 1.0 / (side - 1) as f32;
     let mut points: Vec<Vec3> = vec![Vec3::ZERO, Vec3::X];
@@ -236,16 +218,15 @@ pub fn strewn(side: u32) -> Mesh {
 fn a_mesh_without_rows_and_columns_is_no_lattice() {
     let mut holed = cut_at_random(9, 9, &mut Rng::with_seed(1));
     holed.1.drain(60..62);
-    let mut two_sheets = Mesh::from(ClothGrid::new(1.0, 1.0, 4, 4));
-    two_sheets.merge(&Mesh::from(ClothGrid::new(1.0, 1.0, 4, 4)).translated_by(Vec3::X * 5.0)).unwrap();
+    let sheet = Grid::new(1.0, 1.0, 4, 4);
     let meshes = [
         ("equilateral", hexagons(8)),
         ("Delaunay's", strewn(14)),
-        ("a sphere", Sphere::new(1.0).into()),
-        ("a disc", Circle::new(1.0).into()),
+        ("a ball", icosphere(1.0, 6)),
+        ("a disc", fan(32)),
         ("with a hole", assemble(holed.0, &holed.1)),
-        ("in two pieces", two_sheets),
-        ("one triangle", Triangle3d::default().into()),
+        ("in two pieces", both(sheet, shaped(sheet, |p| p + Vec3::X * 5.0))),
+        ("one triangle", triangle()),
     ];
     for (name, mesh) in meshes {
         let topology = topology(mesh);

@@ -1,20 +1,21 @@
 //! Coarse lattices over a cloth: they span it, carry pulls across it, and change nothing else.
 
-use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::{
-    prelude::{ClothGrid, ClothSprings},
-    solver::{LevelPass, Method, SubstepPolicy, measure, topology::level::TransferOperator},
-};
+use bevy_math::{Quat, Vec3, Vec3A};
+use drape_solver::{LevelPass, Method, SourceMesh, SubstepPolicy, measure, topology::level::TransferOperator};
 
 use crate::{
-    bench_bed::{Bed, springs, springs_in_air},
-    lattices::{strewn, topology},
+    bench_bed::Bed,
+    fixtures::{
+        material::{Springs, springs, springs_in_air},
+        mesh::{Grid, topology},
+    },
+    lattices::strewn,
 };
 
 #[test]
 fn levels_span_the_cloth_from_border_to_border() {
     for (columns, rows) in [(32, 32), (33, 20), (100, 9), (3, 50), (16, 16), (128, 128)] {
-        let topology = topology(ClothGrid::new(1.0, 1.0, columns, rows));
+        let topology = topology(Grid::new(1.0, 1.0, columns, rows));
         let (width, height) = (columns as f32 - 1.0, rows as f32 - 1.0);
         assert!(!topology.levels.is_empty(), "{columns} x {rows}");
         assert!(topology.levels.is_sorted_by(|coarse, fine| coarse.stride == 2 * fine.stride));
@@ -30,7 +31,7 @@ fn levels_span_the_cloth_from_border_to_border() {
             assert!((lattice.length_along_column(last_column, 0..last_row) - 1.0).abs() < 1e-5);
         }
     }
-    assert!(topology(ClothGrid::new(1.0, 1.0, 15, 15)).levels.is_empty());
+    assert!(topology(Grid::new(1.0, 1.0, 15, 15)).levels.is_empty());
 }
 
 #[test]
@@ -58,8 +59,8 @@ fn levels_of_an_irregular_mesh_move_particles_between_their_nodes() {
 }
 
 /// A square metre that hangs by two corners, with all that a game gives it but air.
-fn hung(mesh: Mesh) -> Bed {
-    let mut bed = Bed::new(mesh, springs_in_air(ClothSprings::default()));
+fn hung(mesh: SourceMesh) -> Bed {
+    let mut bed = Bed::new(mesh, springs_in_air(Springs::default()));
     let corners = [Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 0.0, -0.5), Vec3::ZERO, Vec3::X];
     let pins: Vec<u32> = (0..).zip(&bed.topology.rest).filter(|(_, p)| corners.contains(p)).map(|(i, _)| i).collect();
     assert_eq!(pins.len(), 2);
@@ -67,8 +68,8 @@ fn hung(mesh: Mesh) -> Bed {
     bed.pinned(pins.iter().copied()).tethered(&pins)
 }
 
-fn grid(n: u32) -> Mesh {
-    ClothGrid::new(1.0, 1.0, n, n).lying().into()
+fn grid(n: u32) -> SourceMesh {
+    Grid::new(1.0, 1.0, n, n).lying().into()
 }
 
 fn largest_strain(bed: &Bed) -> f32 {
@@ -105,7 +106,7 @@ fn levels_leave_a_cloth_alone_that_is_nowhere_too_long() {
     let pressed = |bed: Bed| {
         let mut bed = Bed { gravity: Vec3A::ZERO, ..bed };
         bed.effort = SubstepPolicy::fixed(1, bed.effort.levels);
-        bed.material = springs(ClothSprings::default());
+        bed.material = springs(Springs::default());
         bed.particles.position.iter_mut().for_each(|p| *p = turn * *p * 0.9);
         for anchor in &mut bed.pin_motions {
             anchor.start = bed.particles.position[anchor.particle as usize];
@@ -130,13 +131,13 @@ fn an_effort_leaves_a_soft_cloth_without_tethers_the_stretch_of_its_weight() {
     };
     let mut failures = Vec::new();
     for stiffness in [50.0, 500.0] {
-        let constants = ClothSprings {
+        let constants = Springs {
             structural_stiffness: stiffness,
             shear_stiffness: stiffness / 10.0,
             bend_stiffness: 1.0,
-            ..ClothSprings::default()
+            ..Springs::default()
         };
-        let bed = Bed::new(ClothGrid::new(1.0, 1.0, 32, 32), springs(constants));
+        let bed = Bed::new(Grid::new(1.0, 1.0, 32, 32), springs(constants));
         let expected = sunk(Bed { method: Method::Explicit, ..bed.clone() });
         for max_strain in [0.005, 0.001] {
             let effort = SubstepPolicy::to_hold(max_strain, &bed.topology);

@@ -9,6 +9,7 @@ mod contact;
 mod convergence;
 mod crowds;
 mod determinism;
+mod fixtures;
 mod golden;
 mod grabs;
 mod grain;

@@ -1,30 +1,30 @@
 //! A step doesn't allocate, and a cloth keeps little.
 
-use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::{
-    build,
-    prelude::{ClothGrid, ClothGrip, ClothSprings},
-    solver::{Member, Particles, SelfCollision, step, step_together},
-};
+use bevy_math::Vec3A;
+use drape_solver::{Member, Particles, SelfCollision, build, step, step_together};
 
 use crate::{
-    bench_bed::{ALL, Bed, STABLE, springs_in_air, together},
-    grabs::hand,
+    bench_bed::{ALL, Bed, STABLE, together},
+    fixtures::{
+        hand::{Grip, hand},
+        material::{Springs, springs_in_air},
+        mesh::{Grid, shaped},
+    },
     lattices::hexagons,
     stages::{self, Stage},
 };
 
 #[test]
 fn a_step_allocates_nothing_once_it_has_run() {
-    let plain = ClothSprings::default();
-    let damped = ClothSprings { structural_damping: 0.01, shear_damping: 0.01, ..plain.clone() };
+    let plain = Springs::default();
+    let damped = Springs { structural_damping: 0.01, shear_damping: 0.01, ..plain.clone() };
     let materials = [plain, damped].map(springs_in_air);
     for (method, material) in ALL.into_iter().flat_map(|method| materials.map(|material| (method, material))) {
-        let sheets = [Mesh::from(ClothGrid::new(1.0, 1.0, 24, 24).lying()), hexagons(24).scaled_by(Vec3::splat(0.04))];
+        let sheets = [Grid::new(1.0, 1.0, 24, 24).lying().into(), shaped(hexagons(24), |p| 0.04 * p)];
         for sheet in sheets {
             let bed = Bed::new(sheet, material).pinned([0, 23]).tethered(&[0, 23]).with_levels();
             let mut bed = Bed { method, ..bed };
-            bed.grabs = vec![hand(&bed, 100, [0.2, 0.3, 0.5], ClothGrip::default())];
+            bed.grabs = vec![hand(&bed, 100, [0.2, 0.3, 0.5], Grip::default())];
             bed.step(1.0 / 60.0);
             let info = allocation_counter::measure(|| {
                 for _ in 0..10 {
@@ -84,10 +84,8 @@ fn cloths_that_touch_each_other_allocate_no_more_than_those_that_do_not() {
     for method in STABLE {
         let touching = allocations(&|| stages::swinging(method), step_together);
         // Lists of the members, whatever these do.
-        let mut apart = [
-            Bed::lying(2, springs_in_air(ClothSprings::default())),
-            Bed::lying(2, springs_in_air(ClothSprings::default())),
-        ];
+        let mut apart =
+            [Bed::lying(2, springs_in_air(Springs::default())), Bed::lying(2, springs_in_air(Springs::default()))];
         let lists = together(&mut apart, 1.0 / 60.0, |members| {
             step_together(members);
             allocation_counter::measure(|| step_together(members)).count_total
@@ -98,8 +96,8 @@ fn cloths_that_touch_each_other_allocate_no_more_than_those_that_do_not() {
 
 #[test]
 fn a_grid_keeps_at_most_120_bytes_a_particle() {
-    let material = springs_in_air(ClothSprings::default());
-    let topology = Bed::new(Mesh::from(ClothGrid::new(1.0, 1.0, 64, 64).lying()), material).topology;
+    let material = springs_in_air(Springs::default());
+    let topology = Bed::lying(64, material).topology;
     let info = allocation_counter::measure(|| {
         let rest: Vec<Vec3A> = topology.rest.iter().copied().map(Vec3A::from).collect();
         // Where it was when the step began is kept for drawing.

@@ -2,17 +2,16 @@
 
 use std::sync::Arc;
 
-use bevy::{
-    math::{Isometry3d, Vec3A},
-    mesh::{Mesh, MeshBuilder, Meshable, SphereKind, VertexAttributeValues},
-    prelude::{Quat, Sphere, Vec3},
-};
-use bevy_drape::{
-    prelude::ClothSprings,
-    solver::{Material, MeshShape, Method, Obstacle, Shape, TriangleMesh},
-};
+use bevy_math::{Isometry3d, Quat, Vec3, Vec3A};
+use drape_solver::{Material, MeshShape, Method, Obstacle, Shape, SourceMesh, TriangleMesh};
 
-use crate::bench_bed::{Bed, STABLE, springs};
+use crate::{
+    bench_bed::{Bed, STABLE},
+    fixtures::{
+        material::{Springs, springs},
+        mesh::icosphere,
+    },
+};
 
 /// A box with this size, m, of twelve triangles that face out of it.
 pub fn cuboid(size: Vec3) -> TriangleMesh {
@@ -25,16 +24,14 @@ pub fn cuboid(size: Vec3) -> TriangleMesh {
 
 /// A ball of triangles.
 pub fn ball(radius: f32, subdivisions: u32) -> TriangleMesh {
-    let mesh: Mesh = Sphere::new(radius).mesh().kind(SphereKind::Ico { subdivisions }).build();
-    let Some(VertexAttributeValues::Float32x3(places)) = mesh.attribute(Mesh::ATTRIBUTE_POSITION) else {
-        panic!("a sphere has positions")
+    let SourceMesh { positions, triangles, .. } = icosphere(radius, subdivisions + 1);
+    // Each side has vertices of its own.
+    let first = |i: u32| {
+        let place = positions[i as usize];
+        positions.iter().position(|p| p.distance(place) < 1e-5).map_or(i, |first| first as u32)
     };
-    let places: Vec<Vec3A> = places.iter().copied().map(Vec3A::from).collect();
-    // Vertices repeat along the seam of its texture.
-    let first = |i: usize| places.iter().position(|p| p.distance(places[i]) < 1e-5).unwrap_or(i) as u32;
-    let indices: Vec<u32> = mesh.indices().expect("it has indices").iter().map(first).collect();
-    let triangles: Vec<[u32; 3]> = indices.as_chunks().0.to_vec();
-    TriangleMesh::new(places, &triangles, true)
+    let triangles: Vec<[u32; 3]> = triangles.iter().map(|corners| corners.map(first)).collect();
+    TriangleMesh::new(positions.into_iter().map(Vec3A::from).collect(), &triangles, true)
 }
 
 fn shape(mesh: TriangleMesh) -> Shape {
@@ -46,7 +43,7 @@ fn still(mesh: TriangleMesh, place: Vec3) -> Obstacle {
 }
 
 fn cotton(thickness: f32) -> Material {
-    Material { friction: 0.5, thickness, ..springs(ClothSprings::default()) }
+    Material { friction: 0.5, thickness, ..springs(Springs::default()) }
 }
 
 /// A square metre above the origin, as a game would run it.

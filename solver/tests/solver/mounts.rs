@@ -2,13 +2,16 @@
 
 use core::f32::consts::TAU;
 
-use bevy::math::{Mat3A, Quat, Vec3A};
-use bevy_drape::{
-    prelude::{ClothGrid, Fabric},
-    solver::{AttachedPin, Body, BodyAttachment, Method},
-};
+use bevy_math::{Mat3A, Quat, Vec3A};
+use drape_solver::{AttachedPin, Body, BodyAttachment, Method};
 
-use crate::bench_bed::{ALL, Bed, GRAVITY, STABLE, bare};
+use crate::{
+    bench_bed::{ALL, Bed, GRAVITY, STABLE},
+    fixtures::{
+        material::{Fabric, bare},
+        mesh::Grid,
+    },
+};
 
 const STEP: f32 = 1.0 / 60.0;
 
@@ -140,8 +143,8 @@ fn a_body_hangs_on_a_cloth_whatever_its_mass() {
         for mass in [0.001, 0.1, 5.0] {
             // Hung by its upper edge, with a ball at the middle of the lower one.
             let stiff = Fabric { warp_stiffness: 20_000.0, weft_stiffness: 20_000.0, damping: 1.0, ..cotton() };
-            let material = stiff.material().unwrap();
-            let mut bed = Bed::new(ClothGrid::new(0.4, 1.0, 5, 11), material).with_substeps(16).pinned(0..5);
+            let material = stiff.material();
+            let mut bed = Bed::new(Grid::new(0.4, 1.0, 5, 11), material).with_substeps(16).pinned(0..5);
             bed = bed.tethered(&[0, 1, 2, 3, 4]);
             (bed.method, bed.tether_slack) = (method, 0.005);
             let bottom = bed.particles.position[52];
@@ -165,7 +168,7 @@ fn a_body_hangs_on_a_cloth_whatever_its_mass() {
 
 #[test]
 fn a_ball_on_a_ribbon_swings_as_a_pendulum() {
-    let ribbon = ClothGrid::new(0.02, 1.0, 2, 21);
+    let ribbon = Grid::new(0.02, 1.0, 2, 21);
     let mut bed = Bed::new(ribbon, bare(cotton())).with_substeps(16).pinned([0, 1]).tethered(&[0, 1]);
     bed.tether_slack = 0.005;
     let (top, bottom) = (bed.particles.position[0].y, bed.particles.position[40].y);

@@ -1,15 +1,15 @@
 //! The result doesn't hang on the time step or the number of substeps more than a game would notice.
 
-use bevy_drape::{
-    prelude::ClothSprings,
-    solver::{Material, Method, SubstepPolicy},
-};
+use drape_solver::{Material, Method, SubstepPolicy};
 
-use crate::bench_bed::{Bed, STABLE, rms, springs_in_air};
+use crate::{
+    bench_bed::{Bed, STABLE, rms},
+    fixtures::material::{Springs, springs_in_air},
+};
 
 /// A cloth that hangs by two corners and has come to rest, with the levels that go with so many substeps.
 fn hung(method: Method, rate: f32, substeps: u32) -> Bed {
-    let material = Material { damping: 3.0, ..springs_in_air(ClothSprings::default()) };
+    let material = Material { damping: 3.0, ..springs_in_air(Springs::default()) };
     let bed = Bed::lying(16, material).pinned([0, 15]).tethered(&[0, 15]);
     let effort = SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, &bed.topology));
     let mut bed = Bed { method, effort, ..bed };

@@ -1,16 +1,19 @@
 //! Whatever is thrown at them, the solvers for games stay finite and settle.
 
-use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::{
-    prelude::{ClothGrid, ClothSprings},
-    solver::{LevelPass, Material, Method, SpringKind, SubstepPolicy, constraint::unstructured::spring::strain},
-};
+use bevy_math::{Vec3A, ops};
+use drape_solver::{LevelPass, Material, Method, SpringKind, SubstepPolicy, constraint::unstructured::spring::strain};
 use proptest::prelude::*;
 
-use crate::bench_bed::{ALL, Bed, STABLE, springs_in_air};
+use crate::{
+    bench_bed::{ALL, Bed, STABLE},
+    fixtures::{
+        material::{Springs, springs_in_air},
+        mesh::Grid,
+    },
+};
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..default() })]
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn random_starts_stiffness_and_steps_stay_finite(
@@ -23,17 +26,17 @@ proptest! {
         method in 0_usize..3,
         iterations in 0_u32..20,
     ) {
-        let stiffness = exponents.map(|e| bevy::math::ops::powf(10.0, e));
-        let constants = ClothSprings {
+        let stiffness = exponents.map(|e| ops::powf(10.0, e));
+        let constants = Springs {
             structural_stiffness: stiffness[0],
             shear_stiffness: stiffness[1],
             bend_stiffness: stiffness[2],
             structural_damping: damping,
             bend_damping: damping,
-            ..ClothSprings::default()
+            ..Springs::default()
         };
         let material = Material { density, ..springs_in_air(constants) };
-        let bed = Bed::new(ClothGrid::new(1.0, 1.0, 17, 9), material);
+        let bed = Bed::new(Grid::new(1.0, 1.0, 17, 9), material);
         let mut bed = bed.pinned([0, 16]).tethered(&[0, 16]);
         bed.effort = SubstepPolicy::fixed(substeps, vec![LevelPass { stride: 4, iterations }]);
         bed.max_substeps = 200;
@@ -51,7 +54,7 @@ proptest! {
 }
 
 /// A square metre that hangs by two corners, as a game would run it.
-fn hung(method: Method, n: u32, constants: ClothSprings) -> Bed {
+fn hung(method: Method, n: u32, constants: Springs) -> Bed {
     let corners = [0, n - 1];
     Bed::lying(n, springs_in_air(constants)).pinned(corners).tethered(&corners).like_a_game(method)
 }
@@ -66,7 +69,7 @@ fn jerk(bed: &mut Bed, way: Vec3A, dt: f32) {
 #[test]
 fn a_corner_jerked_by_a_metre_does_not_explode_the_cloth() {
     for method in STABLE {
-        let mut bed = hung(method, 24, ClothSprings::default());
+        let mut bed = hung(method, 24, Springs::default());
         bed.run(1.0);
         jerk(&mut bed, Vec3A::new(-0.5, 0.5, 0.7), 1.0 / 60.0);
         bed.run(2.0);
@@ -77,7 +80,7 @@ fn a_corner_jerked_by_a_metre_does_not_explode_the_cloth() {
 #[test]
 fn a_cloth_crushed_to_a_point_opens_again() {
     for method in STABLE {
-        let bed = Bed::lying(12, springs_in_air(ClothSprings::default())).pinned([0]);
+        let bed = Bed::lying(12, springs_in_air(Springs::default())).pinned([0]);
         let mut bed = bed.like_a_game(method);
         let corner = bed.particles.position[0];
         bed.particles.position.fill(corner);
@@ -95,7 +98,7 @@ fn a_cloth_crushed_to_a_point_opens_again() {
 /// Strands that hang are stretched by less than 2 % two seconds after what `harm` did to them, but for one spring in a
 /// hundred: a cell that was turned inside out can stay so.
 #[track_caller]
-fn assert_mends(constants: ClothSprings, dt: f32, harm: impl FnOnce(&mut Bed)) {
+fn assert_mends(constants: Springs, dt: f32, harm: impl FnOnce(&mut Bed)) {
     let mut bed = hung(Method::Strands, 32, constants);
     for _ in 0..(1.0 / dt).round() as u32 {
         bed.step(dt);
@@ -119,7 +122,7 @@ const AWAY: Vec3A = Vec3A::new(-0.5, 0.5, 0.7);
 
 #[test]
 fn strands_that_were_all_at_one_place_come_back_to_their_length() {
-    assert_mends(ClothSprings::default(), FRAME, |bed| {
+    assert_mends(Springs::default(), FRAME, |bed| {
         let centre = bed.centre();
         bed.particles.position.fill(centre);
         bed.particles.velocity.fill(Vec3A::ZERO);
@@ -128,21 +131,16 @@ fn strands_that_were_all_at_one_place_come_back_to_their_length() {
 
 #[test]
 fn strands_as_stiff_as_steel_come_back_to_their_length() {
-    let steel = ClothSprings {
-        structural_stiffness: 1e6,
-        shear_stiffness: 1e6,
-        bend_stiffness: 1e6,
-        ..ClothSprings::default()
-    };
+    let steel = Springs { structural_stiffness: 1e6, shear_stiffness: 1e6, bend_stiffness: 1e6, ..Springs::default() };
     assert_mends(steel, FRAME, |bed| jerk(bed, AWAY, FRAME));
 }
 
 #[test]
 fn strands_at_ten_steps_a_second_come_back_to_their_length() {
-    assert_mends(ClothSprings::default(), 0.1, |bed| jerk(bed, AWAY, 0.1));
+    assert_mends(Springs::default(), 0.1, |bed| jerk(bed, AWAY, 0.1));
 }
 
 #[test]
 fn strands_with_a_corner_jerked_by_a_metre_come_back_to_their_length() {
-    assert_mends(ClothSprings::default(), FRAME, |bed| jerk(bed, AWAY, FRAME));
+    assert_mends(Springs::default(), FRAME, |bed| jerk(bed, AWAY, FRAME));
 }

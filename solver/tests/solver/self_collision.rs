@@ -1,22 +1,24 @@
 //! Sheets that are tangled when they begin come apart, and pairs that intersect are counted.
 
-use bevy::{
-    math::{DVec3, Vec3, Vec3A, ops},
-    mesh::Mesh,
-};
-use bevy_drape::{
-    prelude::{ClothGrid, ClothSprings},
-    solver::{Material, Method, SelfCollision, measure},
+use bevy_math::{DVec3, Vec3, Vec3A, ops};
+use drape_solver::{Material, Method, SelfCollision, measure};
+
+use crate::{
+    bench_bed::{Bed, STABLE},
+    fixtures::{
+        material::{Springs, springs},
+        mesh::{Grid, both, shaped},
+    },
 };
 
-use crate::bench_bed::{Bed, STABLE, springs};
+/// Substeps with which nothing passes through anything here.
+const ENOUGH: u32 = 32;
 
 /// Two sheets of `n` x `n` particles in one cloth without weight. The upper is where `place` says for its place over the lower.
 fn two_sheets(method: Method, n: u32, place: impl Fn(Vec3) -> Vec3) -> Bed {
-    let mut mesh = Mesh::from(ClothGrid::new(0.5, 0.5, n, n).lying());
-    let upper = mesh.clone().translated_by(Vec3::Y);
-    mesh.merge(&upper).expect("two that are alike");
-    let material = Material { damping: 4.0, ..springs(ClothSprings::default()) };
+    let sheet = Grid::new(0.5, 0.5, n, n).lying();
+    let mesh = both(sheet, shaped(sheet, |p| p + Vec3::Y));
+    let material = Material { damping: 4.0, ..springs(Springs::default()) };
     let bed = Bed::new(mesh, material).like_a_game(method);
     let mut bed = Bed { gravity: Vec3A::ZERO, self_collision: SelfCollision::Robust, ..bed };
     for position in bed.particles.position.iter_mut().filter(|position| position.y > 0.5) {
@@ -96,7 +98,7 @@ fn crossing_pairs(one: &[[Vec3A; 3]], other: &[[Vec3A; 3]], may_meet: impl Fn(us
 fn pairs_that_intersect_are_those_that_each_with_each_finds() {
     let mut random = fastrand::Rng::with_seed(5);
     let mut tangled = |n: u32, size: f32| {
-        let mut bed = Bed::lying(n, springs(ClothSprings::default()));
+        let mut bed = Bed::lying(n, springs(Springs::default()));
         for position in &mut bed.particles.position {
             *position += Vec3A::from([0; 3].map(|_| random.f32() - 0.5)) * size;
         }
@@ -120,6 +122,6 @@ fn pairs_that_intersect_are_those_that_each_with_each_finds() {
         println!("{n}, {size}: {expected} and {expected_between}");
         assert!(expected_between > 0);
     }
-    let flat = Bed::lying(16, springs(ClothSprings::default()));
+    let flat = Bed::lying(16, springs(Springs::default()));
     assert_eq!(tangles(&flat), 0);
 }

@@ -2,19 +2,17 @@
 
 use std::f32::consts::PI;
 
-use bevy::{
-    asset::RenderAssetUsages,
-    math::{Quat, Vec2, Vec3, Vec3A, ops},
-    mesh::{Indices, Mesh, PrimitiveTopology},
-    utils::default,
-};
-use bevy_drape::solver::{Elasticity, Material, Method, Moduli, SimdLevel, SpringConstants, Topology, measure};
+use bevy_math::{EulerRot, Quat, Vec2, Vec2Swizzles, Vec3, Vec3A, ops};
+use drape_solver::{Elasticity, Material, Method, Moduli, SimdLevel, SourceMesh, SpringConstants, Topology, measure};
 use proptest::prelude::*;
 
-use crate::bench_bed::{ALL, Bed, GRAVITY, STABLE, bits, rms};
+use crate::{
+    bench_bed::{ALL, Bed, GRAVITY, STABLE, bits, rms},
+    fixtures::mesh::assemble,
+};
 
 /// Points of a strip along x, moved at random inside, in cells of about `cell`, m, joined by Delaunay's triangulation.
-fn strewn(length: f32, width: f32, cell: f32) -> (Vec<Vec2>, Vec<u32>) {
+fn strewn(length: f32, width: f32, cell: f32) -> (Vec<Vec2>, Vec<[u32; 3]>) {
     let mut random = fastrand::Rng::with_seed(7);
     let [columns, rows] = [length, width].map(|side| (side / cell).round() as u32);
     let mut points = Vec::new();
@@ -27,18 +25,14 @@ fn strewn(length: f32, width: f32, cell: f32) -> (Vec<Vec2>, Vec<u32>) {
     let triangles = delaunator::triangulate(&corners).triangles;
     let area = |t: &[usize; 3]| (points[t[1]] - points[t[0]]).perp_dot(points[t[2]] - points[t[0]]).abs();
     let triangles = triangles.as_chunks().0.iter().filter(|t| area(t) > 1e-3 * cell * cell);
-    let indices = triangles.flat_map(|t| t.map(|i| i as u32)).collect();
-    (points, indices)
+    let triangles = triangles.map(|t| t.map(|i| i as u32)).collect();
+    (points, triangles)
 }
 
 /// The mesh of a strip, put into space. The warp is along its length.
-fn mesh((points, indices): &(Vec<Vec2>, Vec<u32>), place: impl Fn(Vec2) -> Vec3) -> Mesh {
-    let positions: Vec<[f32; 3]> = points.iter().map(|&p| place(p).to_array()).collect();
-    let uvs: Vec<[f32; 2]> = points.iter().map(|p| [p.y, p.x]).collect();
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
-        .with_inserted_indices(Indices::U32(indices.clone()))
+fn mesh((points, triangles): &(Vec<Vec2>, Vec<[u32; 3]>), place: impl Fn(Vec2) -> Vec3) -> SourceMesh {
+    let uvs = points.iter().map(|p| p.yx()).collect();
+    SourceMesh { uvs: Some(uvs), ..assemble(points.iter().map(|&p| place(p)).collect(), triangles) }
 }
 
 fn lying(p: Vec2) -> Vec3 {
@@ -135,7 +129,7 @@ fn what_is_made_curved_stays_so_whichever_way_it_is_turned() {
             let made = strewn(0.1 * PI, 0.1, 0.02);
             let mut bed = Bed { method, gravity: Vec3A::ZERO, ..Bed::new(mesh(&made, half_tube), material) };
             assert!(bed.topology.is_curved);
-            let turn = Quat::from_euler(default(), 0.4, 1.3, -0.7);
+            let turn = Quat::from_euler(EulerRot::default(), 0.4, 1.3, -0.7);
             for position in &mut bed.particles.position {
                 *position = turn * *position;
             }
@@ -149,7 +143,7 @@ fn what_is_made_curved_stays_so_whichever_way_it_is_turned() {
 
 #[test]
 fn what_is_made_flat_is_not_curved_however_it_lies() {
-    let turn = Quat::from_euler(default(), 0.4, 1.3, -0.7);
+    let turn = Quat::from_euler(EulerRot::default(), 0.4, 1.3, -0.7);
     let made = strewn(0.5, 0.3, 0.02);
     let bed = Bed::new(mesh(&made, |p| turn * lying(p) + Vec3::splat(3.0)), sheet(0.2, JERSEY));
     assert!(!bed.topology.is_curved && !bed.topology.bends.is_empty());
@@ -233,7 +227,7 @@ fn all_instructions_give_the_same_bits_and_nothing_is_allocated() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..default() })]
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn whatever_it_is_made_of_and_however_it_is_crumpled_it_stays_finite(

@@ -1,42 +1,36 @@
 //! Whatever the processor has, the bits are the same.
 
-use bevy::{
-    math::{DVec3, Isometry3d, Vec3A},
-    prelude::*,
-};
-use bevy_drape::{
-    prelude::{ClothGrid, ClothGrip, ClothSprings, Fabric},
-    solver::{Elasticity, Gusts, Material, Method, Obstacle, SimdLevel, Solid, WindRegion, WindSource},
+use bevy_math::{DVec3, Isometry3d, Vec3, Vec3A, primitives::Sphere};
+use drape_solver::{
+    Elasticity, Gusts, Material, Method, Obstacle, SimdLevel, Solid, SourceMesh, WindRegion, WindSource,
 };
 
 use crate::{
-    bench_bed::{ALL, Bed, bits, springs_in_air},
-    grabs::hand,
+    bench_bed::{ALL, Bed, bits},
+    fixtures::{
+        hand::{Grip, hand},
+        material::{Fabric, Springs, springs_in_air},
+        mesh::{Grid, icosphere, shaped},
+    },
     lattices::{hexagons, strewn},
     threads::{ell, sleeve},
 };
 
 /// Plain springs.
 fn of_springs(damping: f32) -> Material {
-    let constants = ClothSprings {
-        structural_damping: damping,
-        shear_damping: damping,
-        bend_damping: damping,
-        ..ClothSprings::default()
-    };
+    let constants =
+        Springs { structural_damping: damping, shear_damping: damping, bend_damping: damping, ..Springs::default() };
     Material { damping: 0.5, ..springs_in_air(constants) }
 }
 
 /// A sheet that gets stiffer, and gives way where it is pressed together.
 fn of_moduli(damping: f32) -> Material {
     let sheet = Fabric { damping: 0.5, stretch_damping: 0.1 * damping, bend_damping: damping, ..Fabric::DENIM };
-    Fabric { compression: 0.5, warp_stiffening: 2.0, weft_stiffening: 1.0, ..sheet }
-        .material()
-        .expect("valid constants")
+    Fabric { compression: 0.5, warp_stiffening: 2.0, weft_stiffening: 1.0, ..sheet }.material()
 }
 
 /// A cloth to which all that there is happens at once.
-fn scene(mesh: impl Into<Mesh>, method: Method, material: Material) -> Bed {
+fn scene(mesh: impl Into<SourceMesh>, method: Method, material: Material) -> Bed {
     let bed = Bed::new(mesh, material).pinned([0, 4]).tethered(&[0, 4]).with_levels();
     let mut bed = Bed { method, max_substeps: 512, ..bed };
     if let (Method::Explicit, Elasticity::Moduli(moduli)) = (method, &mut bed.material.elasticity) {
@@ -49,7 +43,7 @@ fn scene(mesh: impl Into<Mesh>, method: Method, material: Material) -> Bed {
     bed.winds = vec![WindSource { velocity, gusts, region, origin, travelled: DVec3::ZERO, gusts_passed: 0.0 }];
     let pose = Isometry3d::from_translation(Vec3::from(bed.centre()) + Vec3::new(0.0, -0.2, 0.2));
     bed.obstacles = vec![Obstacle::still(Solid::Sphere(Sphere::new(0.25)), pose)];
-    bed.grabs = vec![hand(&bed, 100, [0.2, 0.3, 0.5], ClothGrip::default())];
+    bed.grabs = vec![hand(&bed, 100, [0.2, 0.3, 0.5], Grip::default())];
     bed.particles.force[20] = Vec3A::new(0.01, 0.02, 0.0);
     bed
 }
@@ -58,11 +52,11 @@ fn scene(mesh: impl Into<Mesh>, method: Method, material: Material) -> Bed {
 fn the_widest_instructions_and_the_plainest_give_the_same_bits() {
     // In rows and columns that fill blocks of eight, that don't, in none, and on threads, without and with levels.
     let meshes = [
-        Mesh::from(ClothGrid::new(1.0, 1.0, 24, 24)),
-        Mesh::from(ClothGrid::new(1.0, 0.8, 21, 17).lying()),
-        Mesh::from(Sphere::new(0.4)),
+        SourceMesh::from(Grid::new(1.0, 1.0, 24, 24)),
+        Grid::new(1.0, 0.8, 21, 17).lying().into(),
+        icosphere(0.4, 6),
         strewn(20),
-        hexagons(20).scaled_by(Vec3::splat(0.05)),
+        shaped(hexagons(20), |p| 0.05 * p),
         sleeve(16, 24),
         ell(22),
     ];

@@ -1,18 +1,18 @@
 //! No particle gets away.
 
-use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::{
-    prelude::ClothSprings,
-    solver::{Material, Method},
-};
+use bevy_math::Vec3A;
+use drape_solver::{Material, Method};
 
-use crate::bench_bed::{Bed, STABLE, springs_in_air};
+use crate::{
+    bench_bed::{Bed, STABLE},
+    fixtures::material::{Springs, springs_in_air},
+};
 
 const FRAME: f32 = 1.0 / 60.0;
 
 /// A cloth held by two corners that move at `carried` (m/s) and that moves along with them.
 fn carried(method: Method, carried: Vec3A) -> Bed {
-    let material = Material { damping: 0.0, ..springs_in_air(ClothSprings::default()) };
+    let material = Material { damping: 0.0, ..springs_in_air(Springs::default()) };
     let bed = Bed::lying(16, material).pinned([0, 15]).tethered(&[0, 15]).with_levels();
     let mut bed = Bed { method, max_velocity: 50.0, fluid_density: 0.0, ..bed };
     bed.pin_motions.iter_mut().for_each(|anchor| anchor.end = anchor.start + carried * FRAME);

@@ -1,14 +1,14 @@
 //! The explicit solver's own number of substeps.
 
-use bevy_drape::{
-    prelude::ClothSprings,
-    solver::{Elasticity, Method},
+use drape_solver::{Elasticity, Method};
+
+use crate::{
+    bench_bed::Bed,
+    fixtures::material::{Springs, springs},
 };
 
-use crate::bench_bed::{Bed, springs};
-
 fn explicit(structural_stiffness: f32, max_substeps: u32) -> Bed {
-    let material = springs(ClothSprings { structural_stiffness, ..ClothSprings::default() });
+    let material = springs(Springs { structural_stiffness, ..Springs::default() });
     Bed { method: Method::Explicit, max_substeps, ..Bed::lying(12, material).pinned([0, 11]) }
 }
 

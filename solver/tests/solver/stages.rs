@@ -6,22 +6,22 @@
 
 use std::sync::Arc;
 
-use bevy::{
-    math::{DVec3, Isometry3d, Mat3A, Vec3A, primitives::InfinitePlane3d},
-    mesh::Mesh,
-    prelude::{Cuboid, Quat, Sphere, Vec3},
+use bevy_math::{
+    DVec3, Isometry3d, Mat3A, Quat, Vec3, Vec3A,
+    primitives::{Cuboid, InfinitePlane3d, Sphere},
 };
-use bevy_drape::{
-    prelude::{ClothGrid, ClothGrip, ClothSprings, Fabric},
-    solver::{
-        AttachedPin, Body, BodyAttachment, Elasticity, Gusts, Material, Member, MeshShape, Method, Obstacle,
-        SelfCollision, Shape, Solid, TriangleMesh, WindRegion, WindSource,
-    },
+use drape_solver::{
+    AttachedPin, Body, BodyAttachment, Elasticity, Gusts, Material, Member, MeshShape, Method, Obstacle, SelfCollision,
+    Shape, Solid, SourceMesh, TriangleMesh, WindRegion, WindSource,
 };
 
 use crate::{
-    bench_bed::{Bed, springs_in_air, together},
-    grabs::hand,
+    bench_bed::{Bed, together},
+    fixtures::{
+        hand::{Grip, hand},
+        material::{Fabric, Springs, springs_in_air},
+        mesh::{Grid, shaped},
+    },
     lattices::{hexagons, strewn},
 };
 
@@ -51,8 +51,7 @@ impl Stage {
 
 /// Springs that are damped, in air.
 fn cotton() -> Material {
-    let damped =
-        ClothSprings { structural_damping: 0.01, shear_damping: 0.01, bend_damping: 0.01, ..ClothSprings::default() };
+    let damped = Springs { structural_damping: 0.01, shear_damping: 0.01, bend_damping: 0.01, ..Springs::default() };
     Material { damping: 0.0, ..springs_in_air(damped) }
 }
 
@@ -60,7 +59,7 @@ fn cotton() -> Material {
 fn denim() -> Material {
     let sheet = Fabric { compression: 0.5, warp_stiffening: 2.0, weft_stiffening: 1.0, ..Fabric::DENIM };
     let sheet = Fabric { damping: 0.0, stretch_damping: 0.001, bend_damping: 0.01, ..sheet };
-    sheet.material().expect("valid constants")
+    sheet.material()
 }
 
 /// The same without what it resists bending with.
@@ -73,30 +72,30 @@ fn limp_denim() -> Material {
 }
 
 /// A cloth that hangs by two particles in a wind with gusts, with levels, and held by a hand.
-fn hung(mesh: impl Into<Mesh>, pins: [u32; 2], method: Method, material: Material) -> Bed {
+fn hung(mesh: impl Into<SourceMesh>, pins: [u32; 2], method: Method, material: Material) -> Bed {
     let bed = Bed::new(mesh, material).pinned(pins).tethered(&pins).with_levels();
     let gusts = Gusts { strength: 0.5, period: 2.0, turbulence: 0.3, eddy_size: 0.5, seed: 7 };
     let (region, origin) = (WindRegion::Everywhere, Vec3A::ZERO);
     let velocity = Vec3A::new(1.0, 1.0, 4.0);
     let wind = WindSource { velocity, gusts, region, origin, travelled: DVec3::ZERO, gusts_passed: 0.0 };
-    let grabs = vec![hand(&bed, 100, [0.25, 0.25, 0.5], ClothGrip::default())];
+    let grabs = vec![hand(&bed, 100, [0.25, 0.25, 0.5], Grip::default())];
     // The explicit method is softened where it would need more substeps.
     Bed { method, max_substeps: 64, winds: vec![wind], grabs, ..bed }
 }
 
 /// A grid in the wind.
 pub fn grid(method: Method) -> Stage {
-    Stage::alone(hung(ClothGrid::new(1.0, 0.75, 21, 17), [0, 20], method, cotton()))
+    Stage::alone(hung(Grid::new(1.0, 0.75, 21, 17), [0, 20], method, cotton()))
 }
 
 /// The same of a sheet.
 pub fn sheet() -> Stage {
-    Stage::alone(hung(ClothGrid::new(1.0, 0.75, 21, 17), [0, 20], Method::Strands, denim()))
+    Stage::alone(hung(Grid::new(1.0, 0.75, 21, 17), [0, 20], Method::Strands, denim()))
 }
 
 /// A grid that is large enough for threads to share it: no hand holds it, and nothing is near.
 pub fn large() -> Stage {
-    let bed = hung(ClothGrid::new(1.0, 1.25, 101, 102).lying(), [0, 100], Method::Strands, cotton());
+    let bed = hung(Grid::new(1.0, 1.25, 101, 102).lying(), [0, 100], Method::Strands, cotton());
     Stage::alone(Bed { grabs: Vec::new(), ..bed }.with_substeps(2).with_levels())
 }
 
@@ -107,7 +106,7 @@ pub fn irregular(method: Method) -> Stage {
 
 /// Regular triangles in the wind, on threads.
 pub fn threads() -> Stage {
-    Stage::alone(hung(hexagons(16).scaled_by(Vec3::splat(0.0625)), [0, 15], Method::Strands, cotton()))
+    Stage::alone(hung(shaped(hexagons(16), |p| 0.0625 * p), [0, 15], Method::Strands, cotton()))
 }
 
 /// Irregular triangles of a sheet in the wind, which don't bend.
@@ -126,7 +125,7 @@ fn turned(place: Vec3, axis: Vec3) -> Isometry3d {
 }
 
 /// A cloth that falls on a ball, a box that goes to and fro and turns, a wedge of triangles, and the ground.
-fn fallen(mesh: impl Into<Mesh>, method: Method) -> Stage {
+fn fallen(mesh: impl Into<SourceMesh>, method: Method) -> Stage {
     let mut bed = Bed { method, max_substeps: 64, ..Bed::new(mesh, cotton()).with_substeps(16) };
     let centre = bed.centre();
     bed.particles.position.iter_mut().for_each(|place| *place += Vec3A::Y * 0.375 - centre);
@@ -151,7 +150,7 @@ fn fallen(mesh: impl Into<Mesh>, method: Method) -> Stage {
 
 /// A grid that falls on obstacles.
 pub fn fallen_grid(method: Method) -> Stage {
-    fallen(ClothGrid::new(1.0, 1.0, 14, 14).lying(), method)
+    fallen(Grid::new(1.0, 1.0, 14, 14).lying(), method)
 }
 
 /// Irregular triangles that fall on obstacles.
@@ -225,8 +224,8 @@ impl Block {
 /// its middle.
 pub fn swinging(method: Method) -> Stage {
     let above = Vec3A::Y * (0.5 * Block::SIZE.y + 0.03125);
-    let hung = Bed::new(ClothGrid::new(0.25, 0.5, 7, 13), cotton()).with_substeps(16).pinned([0, 6]);
-    let over = Bed::new(ClothGrid::new(0.375, 0.375, 10, 10).lying(), cotton()).with_substeps(16);
+    let hung = Bed::new(Grid::new(0.25, 0.5, 7, 13), cotton()).with_substeps(16).pinned([0, 6]);
+    let over = Bed::new(Grid::new(0.375, 0.375, 10, 10).lying(), cotton()).with_substeps(16);
     let mut over = Bed { offset: Vec3A::new(0.0625, -0.25, 0.25), ..over };
     over.particles.position.iter_mut().for_each(|p| *p += Vec3A::new(0.0, 0.015625, 0.03125));
     let place = Vec3A::NEG_Y * 0.25 - above;

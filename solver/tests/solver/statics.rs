@@ -1,16 +1,19 @@
 //! Motions and states whose answers are on paper.
 
-use bevy::math::{Vec3A, ops};
-use bevy_drape::{
-    prelude::{ClothGrid, ClothSprings, Fabric},
-    solver::{Material, Method},
-};
+use bevy_math::{Vec3A, ops};
+use drape_solver::{Material, Method};
 
-use crate::bench_bed::{ALL, Bed, GRAVITY, bare, springs};
+use crate::{
+    bench_bed::{ALL, Bed, GRAVITY},
+    fixtures::{
+        material::{Fabric, Springs, bare, springs},
+        mesh::Grid,
+    },
+};
 
 /// Every method with plain springs and with moduli.
 fn all() -> impl Iterator<Item = (Method, Material)> {
-    let materials = [springs(ClothSprings::default()), bare(Fabric::default())];
+    let materials = [springs(Springs::default()), bare(Fabric::default())];
     ALL.into_iter().flat_map(move |method| materials.map(|material| (method, material)))
 }
 
@@ -28,7 +31,7 @@ fn a_free_cloth_falls_as_everything_does() {
 #[test]
 fn damping_slows_by_the_exponential_law() {
     for method in ALL {
-        let mut bed = Bed { method, gravity: Vec3A::ZERO, ..Bed::lying(4, springs(ClothSprings::default())) };
+        let mut bed = Bed { method, gravity: Vec3A::ZERO, ..Bed::lying(4, springs(Springs::default())) };
         bed.material.damping = 2.0;
         bed.particles.velocity.fill(Vec3A::X);
         bed.run(0.5);
@@ -39,13 +42,9 @@ fn damping_slows_by_the_exponential_law() {
 
 /// A strip of two particles by two, pinned at the top: each thread is one spring with a weight.
 fn loaded_strip(method: Method, stiffness: f32) -> Bed {
-    let constants = ClothSprings {
-        structural_stiffness: stiffness,
-        shear_stiffness: 0.0,
-        bend_stiffness: 0.0,
-        ..ClothSprings::default()
-    };
-    let bed = Bed::new(ClothGrid::new(1.0, 1.0, 2, 2), springs(constants)).pinned([0, 1]);
+    let constants =
+        Springs { structural_stiffness: stiffness, shear_stiffness: 0.0, bend_stiffness: 0.0, ..Springs::default() };
+    let bed = Bed::new(Grid::new(1.0, 1.0, 2, 2), springs(constants)).pinned([0, 1]);
     Bed { method, ..bed }
 }
 
@@ -88,7 +87,7 @@ fn damping_along_springs_takes_the_energy_of_stretching_and_leaves_the_fall_alon
     let mut failures = Vec::new();
     for method in ALL {
         let constants =
-            ClothSprings { structural_damping: 0.5, shear_damping: 0.5, bend_damping: 0.5, ..ClothSprings::default() };
+            Springs { structural_damping: 0.5, shear_damping: 0.5, bend_damping: 0.5, ..Springs::default() };
         let mut bed = Bed { method, ..Bed::lying(6, springs(constants)) };
         for (position, rest) in bed.particles.position.iter_mut().zip(&bed.topology.rest) {
             *position = Vec3A::from(*rest) * 1.1;
@@ -135,7 +134,7 @@ fn momenta(bed: &Bed) -> (Vec3A, Vec3A) {
 #[test]
 fn fixed_particles_have_no_velocity_and_stay_to_the_bit() {
     for method in ALL {
-        let mut bed = Bed { method, ..Bed::lying(8, springs(ClothSprings::default())).pinned([0, 7]) };
+        let mut bed = Bed { method, ..Bed::lying(8, springs(Springs::default())).pinned([0, 7]) };
         let place = bed.particles.position[7];
         bed.particles.force[7] = Vec3A::splat(1e6);
         bed.run(1.0);

@@ -1,37 +1,37 @@
 //! The default solver: threads as a whole, and no more effort than is needed.
 
-use bevy::{
-    math::{Isometry3d, Vec3A, primitives::InfinitePlane3d},
-    prelude::*,
-};
-use bevy_drape::{
-    prelude::{ClothGrid, ClothSprings},
-    solver::{Method, Obstacle, Solid, SpringKind, SubstepPolicy, measure},
-};
+use bevy_math::{Isometry3d, Vec3, Vec3A, primitives::InfinitePlane3d};
+use drape_solver::{Method, Obstacle, Solid, SpringKind, SubstepPolicy, measure};
 
-use crate::bench_bed::{ALL, Bed, GRAVITY, STABLE, springs, springs_in_air};
+use crate::{
+    bench_bed::{ALL, Bed, GRAVITY, STABLE},
+    fixtures::{
+        material::{Springs, springs, springs_in_air},
+        mesh::Grid,
+    },
+};
 
 const FRAME: f32 = 1.0 / 60.0;
 
 /// Springs of which only one kind is stiff, in N/m.
-fn only(kind: SpringKind, stiffness: f32) -> ClothSprings {
+fn only(kind: SpringKind, stiffness: f32) -> Springs {
     let of = |other| if other == kind { stiffness } else { 0.0 };
-    ClothSprings {
+    Springs {
         structural_stiffness: of(SpringKind::Structural),
         shear_stiffness: of(SpringKind::Shear),
         bend_stiffness: of(SpringKind::Bend),
-        ..ClothSprings::default()
+        ..Springs::default()
     }
 }
 
 /// Two threads side by side that hang from their first particles, along the columns or along the rows of a grid, and
 /// the particles of each from the top down.
-fn threads(count: u32, are_columns: bool, constants: ClothSprings) -> (Bed, [Vec<u32>; 2]) {
+fn threads(count: u32, are_columns: bool, constants: Springs) -> (Bed, [Vec<u32>; 2]) {
     let (columns, rows) = if are_columns { (2, count) } else { (count, 2) };
     let (width, height) = if are_columns { (0.05, 1.0) } else { (1.0, 0.05) };
-    let grid = ClothGrid::new(width, height, columns, rows);
+    let grid = Grid::new(width, height, columns, rows);
     let threads = [0, 1].map(|side| -> Vec<u32> {
-        (0..count).map(|i| if are_columns { grid.vertex(side, i) } else { grid.vertex(i, side) }).collect()
+        (0..count).map(|i| if are_columns { grid.particle(side, i) } else { grid.particle(i, side) }).collect()
     });
     let mut bed = Bed::new(grid, springs(constants)).pinned(threads.iter().map(|thread| thread[0]));
     bed.gravity = GRAVITY * if are_columns { Vec3A::NEG_Y } else { Vec3A::X };
@@ -82,14 +82,14 @@ fn a_weight_on_a_spring_of_any_kind_stretches_it_by_hookes_law() {
     for (method, kind) in ALL.into_iter().flat_map(|method| SpringKind::ALL.map(|kind| (method, kind))) {
         // All but the last of three rows are fixed: each of its particles hangs on what is above it.
         let columns = 9;
-        let grid = ClothGrid::new(0.8, 0.2, columns, 3);
+        let grid = Grid::new(0.8, 0.2, columns, 3);
         let bed = Bed::new(grid, springs(only(kind, STIFFNESS))).pinned(0..2 * columns).with_substeps(8);
         let mut bed = Bed { method, ..bed };
         bed.material.damping = 6.0;
         bed.run(8.0);
         // The outermost have a diagonal to one side only.
         for column in 1..columns - 1 {
-            let particle = grid.vertex(column, 2) as usize;
+            let particle = grid.particle(column, 2) as usize;
             let springs: Vec<_> = bed
                 .topology
                 .springs_of(kind)
@@ -116,7 +116,7 @@ fn a_weight_on_a_spring_of_any_kind_stretches_it_by_hookes_law() {
 /// A square metre of `n` x `n` particles that hangs by two corners, with all that a game gives it but air.
 fn hung(n: u32) -> Bed {
     let corners = [0, n - 1];
-    let mut bed = Bed::lying(n, springs_in_air(ClothSprings::default())).pinned(corners).tethered(&corners);
+    let mut bed = Bed::lying(n, springs_in_air(Springs::default())).pinned(corners).tethered(&corners);
     bed.fluid_density = 0.0;
     bed
 }
@@ -214,11 +214,11 @@ fn a_tall_cloth_sways_like_a_wide_one_that_is_turned() {
     let (long, short) = (70, 9);
     let place = |is_tall: bool| {
         let (columns, rows) = if is_tall { (short, long) } else { (long, short) };
-        let grid = ClothGrid::new(0.1 * columns as f32, 0.1 * rows as f32, columns, rows);
+        let grid = Grid::new(0.1 * columns as f32, 0.1 * rows as f32, columns, rows);
         let particle = |along: u32, across: u32| {
-            if is_tall { grid.vertex(across, along) } else { grid.vertex(along, across) }
+            if is_tall { grid.particle(across, along) } else { grid.particle(along, across) }
         };
-        let bed = Bed::new(grid, springs(ClothSprings::default())).pinned((0..short).map(|across| particle(0, across)));
+        let bed = Bed::new(grid, springs(Springs::default())).pinned((0..short).map(|across| particle(0, across)));
         let (down, aside) = if is_tall { (Vec3A::NEG_Y, Vec3A::X) } else { (Vec3A::X, Vec3A::NEG_Y) };
         let mut bed = bed.with_substeps(16);
         bed.material.damping = 4.0;

@@ -2,23 +2,20 @@
 
 use core::f32::consts::TAU;
 
-use bevy::{
-    asset::RenderAssetUsages,
-    math::ops,
-    mesh::{Indices, PrimitiveTopology},
-    prelude::*,
-};
-use bevy_drape::{
-    build,
-    prelude::{ClothGrid, ClothSprings},
-    solver::Tethers,
-};
+use bevy_math::{Vec3, ops};
+use drape_solver::{Method, SourceMesh, Tethers, build};
 
-use crate::bench_bed::{Bed, STABLE, springs};
+use crate::{
+    bench_bed::{Bed, STABLE},
+    fixtures::{
+        material::{Springs, springs},
+        mesh::{Grid, assemble, both, shaped},
+    },
+};
 
 #[test]
 fn on_a_flat_grid_a_tether_is_as_long_as_the_straight_line() {
-    let bed = Bed::lying(33, springs(ClothSprings::default()));
+    let bed = Bed::lying(33, springs(Springs::default()));
     let tethers = build::tethers(&bed.topology, &[0, 32]);
     for particle in (0..33 * 33).filter(|particle| ![0, 32].contains(particle)) {
         assert!(tethers.iter().any(|tether| tether.particle == particle), "{particle} has none");
@@ -34,30 +31,27 @@ fn on_a_flat_grid_a_tether_is_as_long_as_the_straight_line() {
 }
 
 /// An open tube around the Y axis, of `around` x `rings` cells. Its diagonals alternate.
-fn tube(radius: f32, height: f32, around: u32, rings: u32) -> Mesh {
+fn tube(radius: f32, height: f32, around: u32, rings: u32) -> SourceMesh {
     let place = |ring: u32, column: u32| {
         let angle = TAU * column as f32 / around as f32;
-        [radius * ops::cos(angle), height * ring as f32 / rings as f32, radius * ops::sin(angle)]
+        Vec3::new(radius * ops::cos(angle), height * ring as f32 / rings as f32, radius * ops::sin(angle))
     };
-    let positions: Vec<[f32; 3]> =
-        (0..=rings).flat_map(|ring| (0..around).map(move |column| place(ring, column))).collect();
-    let mut indices = Vec::new();
+    let positions = (0..=rings).flat_map(|ring| (0..around).map(move |column| place(ring, column))).collect();
+    let mut triangles = Vec::new();
     for (ring, column) in (0..rings).flat_map(|ring| (0..around).map(move |column| (ring, column))) {
         let at = |ring: u32, column: u32| ring * around + column % around;
         let [a, b] = [at(ring, column), at(ring, column + 1)];
         let [c, d] = [at(ring + 1, column), at(ring + 1, column + 1)];
-        indices.extend(if (ring + column) % 2 == 0 { [a, c, b, b, c, d] } else { [a, c, d, a, d, b] });
+        triangles.extend(if (ring + column) % 2 == 0 { [[a, c, b], [b, c, d]] } else { [[a, c, d], [a, d, b]] });
     }
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-        .with_inserted_indices(Indices::U32(indices))
+    assemble(positions, &triangles)
 }
 
 #[test]
 fn around_a_tube_a_tether_is_as_long_as_the_straight_line_on_its_unrolled_side() {
     for (around, rings) in [(48, 40), (24, 60), (96, 20)] {
         let (radius, height) = (0.25, 1.0);
-        let bed = Bed::new(tube(radius, height, around, rings), springs(ClothSprings::default()));
+        let bed = Bed::new(tube(radius, height, around, rings), springs(Springs::default()));
         let pin = (rings / 3) * around + 5;
         let tethers = build::tethers(&bed.topology, &[pin]);
         assert_eq!(tethers.len(), bed.particles.len() - 1);
@@ -78,24 +72,16 @@ fn around_a_tube_a_tether_is_as_long_as_the_straight_line_on_its_unrolled_side()
 fn around_a_slit_a_tether_takes_the_long_way() {
     // A sheet slit from the left edge to its middle column: the way goes around the end of the slit.
     let n = 21;
-    let grid = ClothGrid::new(1.0, 1.0, n, n);
-    let mesh = Mesh::from(grid);
-    let Some(indices) = mesh.indices() else { panic!("a grid is indexed") };
-    let indices: Vec<u32> = indices.iter().map(|i| i as u32).collect();
+    let grid = Grid::new(1.0, 1.0, n, n);
+    let mut mesh = SourceMesh::from(grid);
     let slit_row = 10;
-    let kept: Vec<u32> = indices
-        .chunks(3)
-        .filter(|t| {
-            let rows = t.iter().map(|v| v / n);
-            let left = t.iter().all(|v| v % n <= 10);
-            !(left && rows.clone().min() == Some(slit_row) && rows.max() == Some(slit_row + 1))
-        })
-        .flatten()
-        .copied()
-        .collect();
-    let mesh = mesh.with_inserted_indices(Indices::U32(kept));
-    let bed = Bed::new(mesh, springs(ClothSprings::default()));
-    let (above, below) = (grid.vertex(0, slit_row), grid.vertex(0, slit_row + 1));
+    mesh.triangles.retain(|t| {
+        let rows = t.iter().map(|v| v / n);
+        let left = t.iter().all(|v| v % n <= 10);
+        !(left && rows.clone().min() == Some(slit_row) && rows.max() == Some(slit_row + 1))
+    });
+    let bed = Bed::new(mesh, springs(Springs::default()));
+    let (above, below) = (grid.particle(0, slit_row), grid.particle(0, slit_row + 1));
     let tethers = build::tethers(&bed.topology, &[above]);
     let tether = tethers.iter().find(|tether| tether.particle == below).expect("the sheet is in one piece");
     // To the end of the slit, down a cell, and back: 0.5 m each way.
@@ -104,10 +90,9 @@ fn around_a_slit_a_tether_takes_the_long_way() {
 
 #[test]
 fn a_particle_without_a_way_to_a_pin_has_no_tether() {
-    let two = Mesh::from(ClothGrid::new(1.0, 1.0, 3, 3));
-    let mut mesh = two.clone();
-    mesh.merge(&two.translated_by(Vec3::X * 5.0)).expect("the same attributes");
-    let bed = Bed::new(mesh, springs(ClothSprings::default()));
+    let sheet = Grid::new(1.0, 1.0, 3, 3);
+    let mesh = both(sheet, shaped(sheet, |p| p + Vec3::X * 5.0));
+    let bed = Bed::new(mesh, springs(Springs::default()));
     let tethers = build::tethers(&bed.topology, &[0]);
     assert_eq!(tethers.len(), 8);
     assert!(tethers.iter().all(|tether| tether.particle < 9));
@@ -116,7 +101,7 @@ fn a_particle_without_a_way_to_a_pin_has_no_tether() {
 #[test]
 fn tethers_keep_a_soft_cloth_within_its_length() {
     let reaches = STABLE.map(|method| {
-        let soft = springs(ClothSprings { structural_stiffness: 5.0, ..ClothSprings::default() });
+        let soft = springs(Springs { structural_stiffness: 5.0, ..Springs::default() });
         let mut bed = Bed::lying(16, soft).pinned([0, 15]).tethered(&[0, 15]).like_a_game(method);
         let mut farthest = 0.0_f32;
         for _ in 0..120 {
@@ -129,6 +114,6 @@ fn tethers_keep_a_soft_cloth_within_its_length() {
         farthest
     });
     // The second of two tethers can push a particle a little past the first, and strands come after both.
-    let most = STABLE.map(|method| if method == bevy_drape::solver::Method::Strands { 1.06 } else { 1.05 });
+    let most = STABLE.map(|method| if method == Method::Strands { 1.06 } else { 1.05 });
     assert!(reaches.iter().zip(most).all(|(&reach, most)| reach <= most), "{STABLE:?} are stretched to {reaches:?}");
 }

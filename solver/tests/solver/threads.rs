@@ -2,20 +2,21 @@
 
 use std::collections::BTreeSet;
 
-use bevy::{math::ops, prelude::*};
-use bevy_drape::{
-    prelude::{ClothGrid, ClothSprings},
-    solver::{MeshStructure, Method, SpringKind, SubstepPolicy, Topology, measure},
-};
+use bevy_math::{Quat, Vec3, ops};
+use drape_solver::{MeshStructure, Method, SourceMesh, SpringKind, SubstepPolicy, Topology, measure};
 use fastrand::Rng;
 
 use crate::{
-    bench_bed::{Bed, rms, springs, springs_in_air},
-    lattices::{assemble, hexagons, strewn, topology},
+    bench_bed::{Bed, rms},
+    fixtures::{
+        material::{Springs, springs, springs_in_air},
+        mesh::{Grid, assemble, both, fan, shaped, topology, triangle},
+    },
+    lattices::{hexagons, strewn},
 };
 
 /// The cells of a square metre of `side` x `side` particles, upright, that are wanted.
-pub fn quads(side: u32, is_wanted: impl Fn(u32, u32) -> bool) -> Mesh {
+pub fn quads(side: u32, is_wanted: impl Fn(u32, u32) -> bool) -> SourceMesh {
     let place = |i: u32| Vec3::new((i % side) as f32, -((i / side) as f32), 0.0) / (side - 1) as f32;
     let cells = (0..side - 1).flat_map(|row| (0..side - 1).map(move |column| (row, column)));
     let triangles: Vec<[u32; 3]> = cells
@@ -29,12 +30,12 @@ pub fn quads(side: u32, is_wanted: impl Fn(u32, u32) -> bool) -> Mesh {
 }
 
 /// A square metre without the quarter at the bottom right.
-pub fn ell(side: u32) -> Mesh {
+pub fn ell(side: u32) -> SourceMesh {
     quads(side, |row, column| row < side / 2 || column < side / 2)
 }
 
 /// Equilateral triangles around a tube.
-pub fn sleeve(around: u32, rings: u32) -> Mesh {
+pub fn sleeve(around: u32, rings: u32) -> SourceMesh {
     let place = |i: u32| {
         let (ring, column) = (i / around, i % around);
         let angle = core::f32::consts::TAU * (column as f32 + 0.5 * (ring % 2) as f32) / around as f32;
@@ -52,7 +53,7 @@ pub fn sleeve(around: u32, rings: u32) -> Mesh {
 }
 
 /// Rings and spokes around a hub, upright, a metre wide.
-fn disc(spokes: u32, rings: u32) -> Mesh {
+fn disc(spokes: u32, rings: u32) -> SourceMesh {
     let place = |i: u32| {
         let (ring, spoke) = (i / spokes + 1, i % spokes);
         let (angle, radius) = (core::f32::consts::TAU * spoke as f32 / spokes as f32, 0.5 * ring as f32 / rings as f32);
@@ -175,8 +176,8 @@ fn a_mesh_in_any_order_has_the_same_threads() {
         let expected = thread_count(&topology(mesh.clone()));
         for seed in 0..5 {
             let mut rng = Rng::with_seed(seed);
-            let mut triangles: Vec<[Vec3; 3]> =
-                mesh.triangles().expect("a list of triangles").map(|triangle| triangle.vertices).collect();
+            let place = |vertex: u32| mesh.positions[vertex as usize];
+            let mut triangles: Vec<[Vec3; 3]> = mesh.triangles.iter().map(|triangle| triangle.map(place)).collect();
             rng.shuffle(&mut triangles);
             let corners = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect::<Vec<_>>();
             let topology = topology(assemble(triangles.as_flattened().to_vec(), &corners));
@@ -188,13 +189,12 @@ fn a_mesh_in_any_order_has_the_same_threads() {
 
 #[test]
 fn irregular_meshes_have_no_threads_and_neither_have_tiny_ones_and_fans() {
-    let mut two = Mesh::from(Triangle3d::default());
-    two.merge(&Mesh::from(Triangle3d::default()).translated_by(Vec3::X * 5.0)).unwrap();
+    let far = |p: Vec3| p + Vec3::X * 5.0;
     let meshes = [
         ("Delaunay's", strewn(30)),
-        ("one triangle", Triangle3d::default().into()),
-        ("two", two),
-        ("a fan", Circle::new(1.0).mesh().resolution(200).into()),
+        ("one triangle", triangle()),
+        ("two", both(triangle(), shaped(triangle(), far))),
+        ("a fan", fan(200)),
     ];
     for (name, mesh) in meshes {
         let topology = topology(mesh);
@@ -219,8 +219,8 @@ fn whatever_is_left_of_a_sheet_has_every_spring_once() {
 }
 
 /// A sheet that hangs by the two particles that are farthest up, left and right.
-fn hung(mesh: Mesh) -> Bed {
-    let bed = Bed::new(mesh, springs(ClothSprings::default()));
+fn hung(mesh: SourceMesh) -> Bed {
+    let bed = Bed::new(mesh, springs(Springs::default()));
     let highest = bed.topology.rest.iter().map(|p| p.y).fold(f32::MIN, f32::max);
     let top = || (0_u32..).zip(&bed.topology.rest).filter(|(_, p)| p.y > highest - 1e-4);
     let left = top().min_by(|(_, p), (_, q)| p.x.total_cmp(&q.x)).expect("a particle").0;
@@ -236,9 +236,9 @@ fn unravelled(mut bed: Bed) -> Bed {
 }
 
 /// Triangles that stand upright, a metre high.
-fn upright_triangles(n: u32) -> Mesh {
+fn upright_triangles(n: u32) -> SourceMesh {
     let turn = Quat::from_rotation_x(core::f32::consts::FRAC_PI_2);
-    hexagons(n).rotated_by(turn).scaled_by(Vec3::splat(1.0 / n as f32))
+    shaped(hexagons(n), |p| turn * p / n as f32)
 }
 
 #[test]
@@ -258,16 +258,17 @@ fn threads_leave_less_strain_than_springs_in_as_many_substeps() {
 
 #[test]
 fn threads_move_as_the_textbook_says_when_steps_are_small() {
-    let lying = |mesh: Mesh| mesh.rotated_by(Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2));
+    let turn = Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2);
     let meshes = [("triangles", upright_triangles(10)), ("an L", ell(10)), ("a sleeve", sleeve(10, 10))];
     for ((name, mesh), damping) in meshes.iter().flat_map(|mesh| [(mesh, 0.0), (mesh, 0.05)]) {
-        let soft = ClothSprings {
+        let soft = Springs {
             structural_stiffness: 200.0,
             structural_damping: damping,
             bend_damping: damping,
-            ..ClothSprings::default()
+            ..Springs::default()
         };
-        let bed = Bed { tethers: None, material: springs(soft), ..hung(lying(mesh.clone())) }.with_substeps(64);
+        let bed = Bed { tethers: None, material: springs(soft), ..hung(shaped(mesh.clone(), |p| turn * p)) }
+            .with_substeps(64);
         assert!(!bed.topology.strand_packs.is_empty(), "{name}");
         let explicit = Bed { method: Method::Explicit, ..bed.clone() };
         let [strands, springs, explicit] = [bed.clone(), unravelled(bed.clone()), explicit].map(|mut bed| {
@@ -288,7 +289,7 @@ fn the_effort_to_hold_a_strain_holds_it_on_threads() {
     let mut failures = Vec::new();
     for (side, max_strain) in [(16, 0.01), (32, 0.01), (32, 0.005)] {
         let mut bed = hung(ell(side));
-        bed.material = springs_in_air(ClothSprings::default());
+        bed.material = springs_in_air(Springs::default());
         bed.tether_slack = 0.002;
         bed.effort = SubstepPolicy::to_hold(max_strain, &bed.topology);
         assert!(bed.effort.levels.is_empty());
@@ -307,10 +308,10 @@ fn the_effort_to_hold_a_strain_holds_it_on_threads() {
 
 #[test]
 fn a_mesh_says_what_it_was_found_to_be() {
-    let texts: [(Mesh, _); 3] = [
-        (ClothGrid::new(1.0, 1.0, 30, 20).into(), "20 rows, 30 columns"),
+    let texts: [(SourceMesh, _); 3] = [
+        (Grid::new(1.0, 1.0, 30, 20).into(), "20 rows, 30 columns"),
         (ell(24), "48 threads"),
-        (Triangle3d::default().into(), "springs in 3 colours"),
+        (triangle(), "springs in 3 colours"),
     ];
     for (mesh, text) in texts {
         assert_eq!(topology(mesh).structure().to_string(), text);

@@ -2,13 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use bevy::{asset::RenderAssetUsages, math::Mat3A, mesh::PrimitiveTopology, prelude::*};
-use bevy_drape::{
-    build::topology_of,
-    prelude::ClothGrid,
-    solver::{SpringKind, Topology},
-};
+use bevy_math::{Mat3A, Vec3};
+use drape_solver::{SourceMesh, SpringKind, Topology, build};
 use proptest::prelude::*;
+
+use crate::fixtures::mesh::{Grid, assemble, both, fan, icosphere, scaled_topology, topology, turned_over};
 
 fn pairs(topology: &Topology, kind: SpringKind) -> BTreeSet<(u32, u32)> {
     topology.springs_of(kind).map(|spring| (spring.a.min(spring.b), spring.a.max(spring.b))).collect()
@@ -38,8 +36,8 @@ fn grid_pairs(columns: u32, rows: u32, kind: SpringKind) -> BTreeSet<(u32, u32)>
 
 #[test]
 fn a_grid_has_twelve_neighbours_inside_and_fewer_at_the_border() {
-    for mesh in [Mesh::from(ClothGrid::new(1.5, 1.0, 7, 5)), one_way_diagonals(7, 5)] {
-        let topology = topology_of(&mesh, Mat3A::IDENTITY).unwrap();
+    for mesh in [Grid::new(1.5, 1.0, 7, 5).into(), one_way_diagonals(7, 5)] {
+        let topology = topology(mesh);
         for kind in SpringKind::ALL {
             assert_eq!(pairs(&topology, kind), grid_pairs(7, 5, kind), "{kind:?}");
         }
@@ -50,29 +48,25 @@ fn a_grid_has_twelve_neighbours_inside_and_fewer_at_the_border() {
 }
 
 /// A grid as a modelling tool exports it: all diagonals one way.
-fn one_way_diagonals(columns: u32, rows: u32) -> Mesh {
-    let mut mesh = Mesh::from(Plane3d::default().mesh().size(1.5, 1.0).subdivisions(0));
-    let grid = Mesh::from(ClothGrid::new(1.5, 1.0, columns, rows));
-    let positions = grid.attribute(Mesh::ATTRIBUTE_POSITION).unwrap().clone();
-    let mut indices = Vec::new();
+fn one_way_diagonals(columns: u32, rows: u32) -> SourceMesh {
+    let SourceMesh { positions, .. } = Grid::new(1.5, 1.0, columns, rows).into();
+    let mut triangles = Vec::new();
     for row in 0..rows - 1 {
         for column in 0..columns - 1 {
             let a = row * columns + column;
             let (b, c, d) = (a + 1, a + columns, a + columns + 1);
-            indices.extend([a, c, b, b, c, d]);
+            triangles.extend([[a, c, b], [b, c, d]]);
         }
     }
-    mesh.insert_attribute(Mesh::ATTRIBUTE_POSITION, positions);
-    mesh.remove_attribute(Mesh::ATTRIBUTE_NORMAL);
-    mesh.remove_attribute(Mesh::ATTRIBUTE_UV_0);
-    mesh.with_inserted_indices(bevy::mesh::Indices::U32(indices))
+    assemble(positions, &triangles)
 }
 
 #[test]
-fn an_unindexed_grid_has_the_same_springs_as_its_indexed_form() {
-    let mesh = Mesh::from(ClothGrid::new(1.0, 1.0, 6, 6));
-    let indexed = topology_of(&mesh, Mat3A::IDENTITY).unwrap();
-    let unindexed = topology_of(&mesh.with_duplicated_vertices(), Mat3A::IDENTITY).unwrap();
+fn a_grid_whose_triangles_share_no_vertices_has_the_same_springs() {
+    let mesh = SourceMesh::from(Grid::new(1.0, 1.0, 6, 6));
+    let corners = mesh.triangles.as_flattened().iter().map(|&vertex| mesh.positions[vertex as usize]).collect();
+    let own: Vec<[u32; 3]> = (0..mesh.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let [indexed, unindexed] = [mesh, assemble(corners, &own)].map(topology);
     assert_eq!(indexed.particle_count(), unindexed.particle_count());
     for kind in SpringKind::ALL {
         // Particles are numbered differently, so springs are compared by where they are.
@@ -87,13 +81,9 @@ fn an_unindexed_grid_has_the_same_springs_as_its_indexed_form() {
 
 #[test]
 fn equilateral_triangles_bend_across_their_edges_and_have_no_cells() {
-    let (h, mut mesh) = (0.75_f32.sqrt(), Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default()));
-    mesh.insert_attribute(
-        Mesh::ATTRIBUTE_POSITION,
-        vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, h, 0.0], [1.5, h, 0.0]],
-    );
-    let mesh = mesh.with_inserted_indices(bevy::mesh::Indices::U32(vec![0, 1, 2, 2, 1, 3]));
-    let topology = topology_of(&mesh, Mat3A::IDENTITY).unwrap();
+    let h = 0.75_f32.sqrt();
+    let places = [[0.0, 0.0], [1.0, 0.0], [0.5, h], [1.5, h]].map(|[x, y]| Vec3::new(x, y, 0.0));
+    let topology = topology(assemble(places.to_vec(), &[[0, 1, 2], [2, 1, 3]]));
     assert_eq!(pairs(&topology, SpringKind::Structural).len(), 5);
     assert_eq!(pairs(&topology, SpringKind::Shear).len(), 0);
     assert_eq!(pairs(&topology, SpringKind::Bend), BTreeSet::from([(0, 3)]));
@@ -101,9 +91,8 @@ fn equilateral_triangles_bend_across_their_edges_and_have_no_cells() {
 
 #[test]
 fn rest_lengths_and_areas_are_in_world_scale() {
-    let mesh = Mesh::from(ClothGrid::new(1.0, 1.0, 5, 5));
     let scale = Mat3A::from_diagonal(Vec3::new(2.0, -3.0, 1.0));
-    let topology = topology_of(&mesh, scale).unwrap();
+    let topology = scaled_topology(Grid::new(1.0, 1.0, 5, 5), scale);
     let longest = topology.springs_of(SpringKind::Structural).map(|s| s.rest).fold(0.0, f32::max);
     assert!((longest - 0.75).abs() < 1e-6);
     assert!((topology.areas.iter().sum::<f32>() - 6.0).abs() < 1e-5);
@@ -111,18 +100,16 @@ fn rest_lengths_and_areas_are_in_world_scale() {
 
 #[test]
 fn a_sheet_modelled_with_two_sides_is_one_sheet() {
-    let front = Mesh::from(ClothGrid::new(1.0, 1.0, 4, 4));
-    let mut both = front.clone();
-    both.merge(&front.clone().with_inverted_winding().unwrap()).unwrap();
-    let (one, two) = (topology_of(&front, Mat3A::IDENTITY).unwrap(), topology_of(&both, Mat3A::IDENTITY).unwrap());
+    let front = SourceMesh::from(Grid::new(1.0, 1.0, 4, 4));
+    let sides = both(front.clone(), turned_over(front.clone()));
+    let [one, two] = [front, sides].map(topology);
     assert_eq!(one, two);
 }
 
 #[test]
 fn within_a_batch_no_two_springs_share_a_particle() {
-    for mesh in [Mesh::from(ClothGrid::new(1.0, 1.0, 9, 7)), Mesh::from(Sphere::new(1.0)), Mesh::from(Circle::new(1.0))]
-    {
-        let topology = topology_of(&mesh, Mat3A::IDENTITY).unwrap();
+    for mesh in [Grid::new(1.0, 1.0, 9, 7).into(), icosphere(1.0, 6), fan(32)] {
+        let topology = topology(mesh);
         let mut count = 0;
         for batch in &topology.batches {
             let mut seen = BTreeSet::new();
@@ -136,18 +123,17 @@ fn within_a_batch_no_two_springs_share_a_particle() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..default() })]
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn any_soup_of_triangles_gives_sound_springs_or_an_error(
         points in prop::collection::vec(prop::array::uniform3(-1.0_f32..1.0), 3..40),
         corners in prop::collection::vec(prop::array::uniform3(0_usize..40), 1..60),
     ) {
-        let indices = corners.as_flattened().iter().map(|i| (i % points.len()) as u32).collect();
-        let mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
-            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, points)
-            .with_inserted_indices(bevy::mesh::Indices::U32(indices));
-        if let Ok(topology) = topology_of(&mesh, Mat3A::IDENTITY) {
+        let count = points.len();
+        let triangles: Vec<[u32; 3]> = corners.iter().map(|t| t.map(|i| (i % count) as u32)).collect();
+        let mesh = assemble(points.into_iter().map(Vec3::from).collect(), &triangles);
+        if let Ok((_, topology)) = build(&mesh, Mat3A::IDENTITY) {
             let count = topology.particle_count() as u32;
             prop_assert!(topology.areas.iter().all(|&area| area > 0.0));
             let mut seen = BTreeSet::new();
