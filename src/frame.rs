@@ -7,6 +7,6 @@ mod teleport;
 
 pub(crate) use clock::{ClothClock, ClothRun, FromLatestStep, StepNumber, count_steps};
 pub(crate) use parallel::{for_each, pool};
-pub(crate) use pose::{Poses, is_invertible};
+pub(crate) use pose::{Poses, SCALE_ROUNDING, is_invertible};
 pub use teleport::ColliderTeleportThreshold;
 pub(crate) use teleport::{Jump, JumpDetection, PastPose, Teleported, forget_teleports};

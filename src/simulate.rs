@@ -123,7 +123,7 @@ fn take_pushes(input: &mut StepInput, scratch: &Scratch) {
     pushes.extend(bodies.chain(by_pins).map(push));
 }
 
-/// What of a cloth goes into a step.
+/// The parts of a cloth that go into a step.
 struct Parts<'a> {
     particles: &'a mut Particles,
     topology: &'a Topology,

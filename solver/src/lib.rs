@@ -6,6 +6,11 @@
 //!
 //! `docs/architecture.md` in the repository has the modules in the order in which a step uses them.
 
+/// Compiles the code of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 pub mod build;
 pub mod constraint;
 pub mod contact;

@@ -233,7 +233,7 @@ impl CandidateItem<'_, '_> {
         state
     }
 
-    /// The mesh that is drawn. Says once what of the user's it doesn't follow.
+    /// Copies the user's mesh to be drawn. Warns once of a skin or morph targets, which aren't followed.
     fn copy_of(&mut self, mesh: &Mesh) -> Mesh {
         let warned = &mut *self.warned;
         let (copy, Lost { skin, morph_targets }) = copy_without_skin(mesh);

@@ -29,8 +29,8 @@ pub trait WorldShiftCommands {
     /// Call it before `PostUpdate`, where transforms are propagated.
     fn shift_world(&mut self, by: Vec3) -> &mut Self;
 
-    /// The same for games that move the transforms themselves, or whose floating origin does: call it in the frame, and
-    /// between the same steps, in which these move.
+    /// Tells cloth of a shift that the game has made itself, or that a floating origin plugin has: call it in the frame, and
+    /// between the same steps, in which transforms are moved.
     fn world_shifted(&mut self, by: Vec3) -> &mut Self;
 }
 

@@ -29,7 +29,7 @@ impl Part {
         Self { shape: shape.into(), pose: Isometry3d::IDENTITY, rounding: 0.0 }
     }
 
-    /// The same, larger all around by `rounding` (m).
+    /// Makes the part larger all around by `rounding` (m).
     pub fn rounded(self, rounding: f32) -> Self {
         Self { rounding, ..self }
     }

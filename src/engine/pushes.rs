@@ -10,11 +10,11 @@ use crate::{
     state::{BodyPush, ClothStatus, StepInput},
 };
 
-/// What all cloths have given in the latest step, in a fixed order: that of the colliders, then of the cloths.
+/// The impulses that bodies got from all cloths in the latest step, ordered by collider, then by cloth.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Pushes {
     pub list: Vec<BodyPush>,
-    /// The same with the cloth and its number among that cloth's.
+    /// The impulses with their cloth and their number among that cloth's.
     buffer: Vec<(BodyPush, Entity, usize)>,
 }
 

@@ -1,5 +1,5 @@
 //! From parry's shapes to parts that cloth can meet. Compiled once for each engine, since each has a parry of its own;
-//! `parry` is that of the module around this one.
+//! `parry` is the one that the module around this one uses.
 
 use std::sync::Arc;
 

@@ -33,6 +33,9 @@ impl Poses<'_, '_> {
     }
 }
 
+/// Changes of scale by less than this share are rounding: a transform that turns comes out a little different in each step.
+pub(crate) const SCALE_ROUNDING: f32 = 1e-5;
+
 /// Whether a transform keeps volume: all of its scales are finite and not zero.
 pub(crate) fn is_invertible(pose: &Affine3A) -> bool {
     pose.is_finite() && pose.matrix3.determinant().is_normal() && pose.inverse().is_finite()

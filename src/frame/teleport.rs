@@ -53,7 +53,7 @@ impl Teleported {
         self.is_within(entity, step, 1)
     }
 
-    /// The same, or a step earlier: a physics engine may come to know of it a step late.
+    /// Whether an entity has been put elsewhere within the latest two steps: a physics engine may come to know of it a step late.
     #[cfg(any(feature = "avian", feature = "rapier"))]
     pub fn contains_lately(&self, entity: Entity, step: StepNumber) -> bool {
         self.is_within(entity, step, 2)
@@ -130,7 +130,7 @@ pub(crate) struct Jump {
 }
 
 impl Jump {
-    /// That which takes the pose `from` to the pose `to`, but for their scales, which the springs' lengths don't follow.
+    /// Makes the motion that takes the pose `from` to the pose `to`, but for their scales, which the springs' lengths don't follow.
     /// None where one of them is flat.
     pub fn between(from: Affine3A, to: Affine3A) -> Option<Self> {
         if !is_invertible(&from) || !is_invertible(&to) {

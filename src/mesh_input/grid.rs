@@ -31,7 +31,7 @@ impl ClothGrid {
         Self { size: Vec2::new(width, height), particles: UVec2::new(columns, rows), lying: false }
     }
 
-    /// The same, lying in the XZ plane and facing up.
+    /// Lays the rectangle into the XZ plane, facing up.
     pub fn lying(mut self) -> Self {
         self.lying = true;
         self

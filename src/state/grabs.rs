@@ -32,7 +32,7 @@ impl Default for ClothGrip {
 }
 
 impl ClothGrip {
-    /// The same without anything negative, NaN or too large to reckon with.
+    /// Takes the nearest values that are in range in place of what is negative, NaN or too large to compute with.
     fn in_range(self) -> Self {
         let bounded = |value: f32| if value.is_nan() { 0.0 } else { value.clamp(0.0, 1e9) };
         Self {

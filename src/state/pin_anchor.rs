@@ -74,7 +74,7 @@ impl PinAnchor {
         Jump::between(self.jumped_from?, self.end)
     }
 
-    /// The jump of a cloth all of whose anchors have jumped: that of the first.
+    /// The jump of a cloth all of whose anchors have jumped: the first anchor's.
     pub fn common_jump(anchors: &[Self]) -> Option<Jump> {
         anchors.iter().all(Self::has_jumped).then(|| anchors.first()?.jump()).flatten()
     }

@@ -6,12 +6,9 @@ use bevy::math::Mat3A;
 
 use super::{ClothAttachments, ClothState};
 use crate::{
-    frame::is_invertible,
+    frame::{SCALE_ROUNDING, is_invertible},
     solver::{Topology, build::stretch::stretch},
 };
-
-/// A change of scale by less than this share is rounding: a transform that turns comes out a little different in each step.
-const ROUNDING: f32 = 1e-5;
 
 /// The scale that a cloth was built at, and the one that it has.
 #[derive(Clone, Debug, Default)]
@@ -25,7 +22,7 @@ pub(crate) struct RestScale {
 }
 
 impl RestScale {
-    /// That of a cloth whose topology was built for a rotation and scale.
+    /// Begins with a cloth whose topology was built for a rotation and scale.
     pub fn new(built_for: Mat3A) -> Self {
         Self { built_for, metric: Some(Mat3A::IDENTITY), built: None }
     }
@@ -49,14 +46,14 @@ impl ClothState {
         }
         let change = self.pose.matrix3 * self.rest_scale.built_for.inverse();
         let metric = change.transpose() * change;
-        let tolerance = ROUNDING * metric.to_cols_array().into_iter().fold(0.0, f32::max);
+        let tolerance = SCALE_ROUNDING * metric.to_cols_array().into_iter().fold(0.0, f32::max);
         let is_known = |known: Mat3A| known.abs_diff_eq(metric, tolerance);
         if self.rest_scale.metric.is_some_and(is_known) || !metric.is_finite() {
             return;
         }
         self.rest_scale.metric = Some(metric);
         let ClothAttachments { tethers, built_tethers, .. } = attachments;
-        if Mat3A::IDENTITY.abs_diff_eq(metric, ROUNDING) {
+        if Mat3A::IDENTITY.abs_diff_eq(metric, SCALE_ROUNDING) {
             if let Some(built) = self.rest_scale.built.take() {
                 self.topology = built;
             }

@@ -125,7 +125,7 @@ impl ClothCollider {
 }
 
 impl ClothCollider {
-    /// The same, in other layers.
+    /// Puts the obstacle into other layers, one a bit.
     pub fn in_layers(mut self, layers: u32) -> Self {
         self.layers = layers;
         self

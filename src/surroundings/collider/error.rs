@@ -22,7 +22,7 @@ pub(crate) enum ColliderError {
          that carries it, or name a mesh with ClothCollider::mesh_of"
     )]
     NoMesh,
-    /// Its mesh is that of a cloth.
+    /// Its mesh belongs to a cloth.
     #[cfg(feature = "mesh_colliders")]
     #[error(
         "its mesh is a cloth's and never stays the same; let the cloth collide by its own settings, or name another mesh \

@@ -37,7 +37,7 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// That of a height field.
+    /// Identifies a height field by its contents.
     pub fn of(field: &HeightField) -> Self {
         let HeightField { size, columns, heights } = field;
         let numbers = size.to_array().into_iter().chain(heights.iter().copied());

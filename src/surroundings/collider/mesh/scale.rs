@@ -2,9 +2,7 @@
 
 use bevy::math::{Affine3A, Isometry3d, Mat3A, Quat, Vec3A};
 
-/// A change of scale by less than this share is rounding: a transform that turns comes out a little different in each
-/// step.
-const ROUNDING: f32 = 1e-5;
+use crate::frame::SCALE_ROUNDING;
 
 /// Scales are told apart by this share of their power of two, far finer than any that shows.
 const FINENESS: f32 = 1.0 / (1 << 20) as f32;
@@ -29,7 +27,7 @@ pub(super) fn rounded(scale: Mat3A) -> Mat3A {
 
 /// Whether two scales are the same but for rounding.
 pub(super) fn is_same(one: Mat3A, other: Mat3A) -> bool {
-    let is_near = |a: Vec3A, b: Vec3A| (a - b).abs().max_element() <= ROUNDING * a.abs().max_element();
+    let is_near = |a: Vec3A, b: Vec3A| (a - b).abs().max_element() <= SCALE_ROUNDING * a.abs().max_element();
     is_near(one.x_axis, other.x_axis) && is_near(one.y_axis, other.y_axis) && is_near(one.z_axis, other.z_axis)
 }
 

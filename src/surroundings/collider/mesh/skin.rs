@@ -47,7 +47,7 @@ fn influences(mesh: &Mesh) -> Option<(&[[u16; JOINTS]], &[[f32; JOINTS]])> {
 }
 
 impl Skin {
-    /// That of the vertices of `mesh` with these numbers, which are at `positions`. None where it has no skin.
+    /// Reads the skin of the vertices of `mesh` with these numbers, which are at `positions`. None where it has no skin.
     pub fn read(mesh: &Mesh, positions: &[Vec3], vertices: &[u32]) -> Option<Self> {
         let (joints, weights) = influences(mesh)?;
         let point = |&vertex: &u32| {

@@ -142,7 +142,7 @@ pub(super) fn numbers_of(points: &[Vec3], numbers: &HashMap<[u32; 3], u32>) -> R
     points.iter().map(number).collect::<Option<_>>().ok_or(ColliderError::NoSize)
 }
 
-/// What is the same for points at one place only.
+/// A key that is the same for points at one place only.
 pub(super) fn key(point: Vec3) -> [u32; 3] {
     point.to_array().map(f32::to_bits)
 }
