@@ -18,7 +18,7 @@ pub(crate) mod rapier;
 mod schedule;
 
 use bodies::Step;
-pub(crate) use bodies::{Bodies, Dynamic, Mover};
+pub(crate) use bodies::{Bodies, BodyPose, Dynamic};
 pub(crate) use body_attachments::{attach_pins, note_anchors, untie_attached};
 pub(crate) use parts::{Part, Shapes, capsule, mesh};
 pub(crate) use pushes::{Pushes, carry, collect_pushes, strayed};
@@ -50,12 +50,12 @@ pub(crate) fn friction_factor(coefficient: f32) -> f32 {
 pub(crate) struct Bridge<S: Send + Sync + 'static> {
     pub shapes: Shapes<S>,
     pub bodies: Bodies,
-    met: Vec<Met>,
+    colliders: Vec<EngineCollider>,
 }
 
 /// A collider that cloth may meet.
 #[derive(Debug)]
-pub(crate) struct Met {
+pub(crate) struct EngineCollider {
     pub collider: Entity,
     /// Layers that it is in, one a bit.
     pub layers: u32,
@@ -63,7 +63,7 @@ pub(crate) struct Met {
     pub friction: f32,
     /// The body that it belongs to, or itself.
     pub body: Entity,
-    pub mover: Mover,
+    pub body_pose: BodyPose,
     /// Where it is in the body's frame.
     pub place: Isometry3d,
     pub parts: Arc<[Part]>,
@@ -71,7 +71,7 @@ pub(crate) struct Met {
 
 impl<S: Send + Sync + 'static> Default for Bridge<S> {
     fn default() -> Self {
-        Self { shapes: Shapes::default(), bodies: Bodies::default(), met: Vec::new() }
+        Self { shapes: Shapes::default(), bodies: Bodies::default(), colliders: Vec::new() }
     }
 }
 
@@ -81,19 +81,19 @@ impl<S: Clone + Send + Sync + 'static> Bridge<S> {
         self.shapes.begin();
         let step = Step { number: jumps.step(), dt: jumps.dt(), threshold: *jumps.threshold };
         self.bodies.begin(step, &jumps.teleported);
-        self.met.clear();
+        self.colliders.clear();
     }
 
-    pub fn meet(&mut self, met: Met) {
-        self.met.push(met);
+    pub fn add(&mut self, collider: EngineCollider) {
+        self.colliders.push(collider);
     }
 
     /// Adds all that cloth may meet to the obstacles, in the order of the colliders.
     pub fn end(&mut self, obstacles: &mut Obstacles) {
-        self.met.sort_unstable_by_key(|met| met.collider);
-        for Met { collider, layers, friction, body, mover, place, parts } in self.met.drain(..) {
-            let way = self.bodies.way(body, &mover);
-            let (start, end) = (way.start * place, way.end * place);
+        self.colliders.sort_unstable_by_key(|it| it.collider);
+        for EngineCollider { collider, layers, friction, body, body_pose, place, parts } in self.colliders.drain(..) {
+            let motion = self.bodies.motion(body, &body_pose);
+            let (start, end) = (motion.start * place, motion.end * place);
             let is_finite = |pose: &Isometry3d| pose.translation.is_finite() && pose.rotation.is_finite();
             if !is_finite(&start) || !is_finite(&end) {
                 continue;
@@ -105,7 +105,7 @@ impl<S: Clone + Send + Sync + 'static> Bridge<S> {
                     end: end * *pose,
                     rounding: *rounding,
                     friction,
-                    body: way.body,
+                    body: motion.body,
                 };
                 (collider, layers, obstacle)
             }));

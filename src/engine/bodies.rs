@@ -13,7 +13,7 @@ use crate::{
 
 /// A body, or a collider of its own, as an engine has left it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Mover {
+pub(crate) struct BodyPose {
     /// Its pose now.
     pub pose: Isometry3d,
     /// What is known of it if only forces move it, and none its user.
@@ -33,9 +33,9 @@ pub(crate) struct Dynamic {
     pub centre: Vec3A,
 }
 
-/// The way of a body over the coming step.
+/// The motion of a body over the coming step, from one pose to another.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Way {
+pub(crate) struct BodyMotion {
     pub start: Isometry3d,
     pub end: Isometry3d,
     /// What it takes to move it.
@@ -79,9 +79,9 @@ impl Bodies {
         self.step = step;
     }
 
-    /// The way of a body from where the latest step has left it to where it is now.
-    pub fn way(&mut self, entity: Entity, mover: &Mover) -> Way {
-        let Mover { pose: end, dynamic } = *mover;
+    /// The motion of a body from where the latest step has left it to where it is now.
+    pub fn motion(&mut self, entity: Entity, body_pose: &BodyPose) -> BodyMotion {
+        let BodyPose { pose: end, dynamic } = *body_pose;
         let speed = dynamic.map_or(0.0, |dynamic| dynamic.velocity.length());
         let Step { number: step, dt, threshold } = self.step;
         let past = self.known.get(&entity).copied();
@@ -107,7 +107,7 @@ impl Bodies {
             inverse_inertia: dynamic.inverse_inertia,
             centre: start * dynamic.centre,
         });
-        Way { start, end, body }
+        BodyMotion { start, end, body }
     }
 
     /// Cloth has moved a body to this pose, at this velocity (m/s).
@@ -130,14 +130,14 @@ impl Bodies {
 mod tests {
     use super::*;
 
-    fn at(x: f32, speed: f32) -> Mover {
+    fn at(x: f32, speed: f32) -> BodyPose {
         let dynamic = Dynamic {
             velocity: Vec3::X * speed,
             inverse_mass: 0.5,
             inverse_inertia: Mat3A::IDENTITY,
             centre: Vec3A::Y,
         };
-        Mover { pose: Isometry3d::from_translation(Vec3::X * x), dynamic: Some(dynamic) }
+        BodyPose { pose: Isometry3d::from_translation(Vec3::X * x), dynamic: Some(dynamic) }
     }
 
     fn begin(bodies: &mut Bodies, teleported: &Teleported) {
@@ -145,9 +145,9 @@ mod tests {
         bodies.begin(Step { number, dt: 0.1, ..default() }, teleported);
     }
 
-    fn start_of(bodies: &mut Bodies, mover: &Mover) -> f32 {
+    fn start_of(bodies: &mut Bodies, body_pose: &BodyPose) -> f32 {
         begin(bodies, &Teleported::default());
-        bodies.way(Entity::PLACEHOLDER, mover).start.translation.x
+        bodies.motion(Entity::PLACEHOLDER, body_pose).start.translation.x
     }
 
     #[test]
@@ -164,7 +164,7 @@ mod tests {
         let mut bodies = Bodies::default();
         start_of(&mut bodies, &at(0.0, 5.0));
         assert_eq!(start_of(&mut bodies, &at(3.0, 5.0)), 3.0);
-        let led = |x: f32| Mover { dynamic: None, ..at(x, 0.0) };
+        let led = |x: f32| BodyPose { dynamic: None, ..at(x, 0.0) };
         assert_eq!(start_of(&mut bodies, &led(8.5)), 3.0, "one that its user moves does sweep");
         assert_eq!(start_of(&mut bodies, &led(15.0)), 15.0, "but not as fast as nothing moves");
     }
@@ -177,7 +177,7 @@ mod tests {
         teleported.insert(Entity::PLACEHOLDER, bodies.step.number);
         for x in [0.0, 0.4] {
             begin(&mut bodies, &teleported);
-            assert_eq!(bodies.way(Entity::PLACEHOLDER, &at(x, 5.0)).start.translation.x, x);
+            assert_eq!(bodies.motion(Entity::PLACEHOLDER, &at(x, 5.0)).start.translation.x, x);
         }
         assert_eq!(start_of(&mut bodies, &at(0.8, 5.0)), 0.4);
     }
@@ -203,7 +203,7 @@ mod tests {
         let mut bodies = Bodies::default();
         start_of(&mut bodies, &at(1.0, 5.0));
         begin(&mut bodies, &Teleported::default());
-        let way = bodies.way(Entity::PLACEHOLDER, &at(1.5, 5.0));
-        assert_eq!(way.body.map(|body| body.centre), Some(Vec3A::new(1.0, 1.0, 0.0)));
+        let motion = bodies.motion(Entity::PLACEHOLDER, &at(1.5, 5.0));
+        assert_eq!(motion.body.map(|body| body.centre), Some(Vec3A::new(1.0, 1.0, 0.0)));
     }
 }

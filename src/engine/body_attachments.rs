@@ -2,7 +2,7 @@
 
 use bevy::{math::Vec3A, prelude::*};
 
-use super::{Bodies, Mover};
+use super::{Bodies, BodyPose};
 use crate::{
     frame::Poses,
     pins::PinTarget,
@@ -16,7 +16,7 @@ pub(crate) fn attach_pins(
     cloth: Entity,
     (state, attachments, input): (&ClothState, &ClothAttachments, &mut StepInput),
     bodies: &mut Bodies,
-    of: impl Fn(Entity) -> Option<(Entity, Mover)>,
+    of: impl Fn(Entity) -> Option<(Entity, BodyPose)>,
 ) {
     let origin = Vec3A::from(state.origin);
     // Pins of one target stand together mostly: its body is looked up once.
@@ -24,11 +24,11 @@ pub(crate) fn attach_pins(
     for (number, pin) in (0..).zip(&attachments.pins) {
         let attachment = match latest {
             Some((target, attachment)) if target == pin.target => attachment,
-            _ => target_entity(pin.target, cloth).and_then(&of).and_then(|(entity, mover)| {
+            _ => target_entity(pin.target, cloth).and_then(&of).and_then(|(entity, body_pose)| {
                 let known = input.attachment_owners.iter().position(|&owner| owner == entity);
                 let known = known.map(|known| known as u32);
                 known.or_else(|| {
-                    let attachment = attachment_to(bodies, entity, &mover, origin)?;
+                    let attachment = attachment_to(bodies, entity, &body_pose, origin)?;
                     input.body_attachments.push(attachment);
                     input.attachment_owners.push(entity);
                     Some(input.body_attachments.len() as u32 - 1)
@@ -41,12 +41,12 @@ pub(crate) fn attach_pins(
 }
 
 /// A body as something to fix pins to. None where nothing moves it.
-fn attachment_to(bodies: &mut Bodies, entity: Entity, mover: &Mover, origin: Vec3A) -> Option<BodyAttachment> {
-    let way = bodies.way(entity, mover);
-    let (body, dynamic) = way.body.zip(mover.dynamic)?;
+fn attachment_to(bodies: &mut Bodies, entity: Entity, body_pose: &BodyPose, origin: Vec3A) -> Option<BodyAttachment> {
+    let motion = bodies.motion(entity, body_pose);
+    let (body, dynamic) = motion.body.zip(body_pose.dynamic)?;
     let attachment = BodyAttachment {
         body: Body { centre: body.centre - origin, ..body },
-        way: way.end * dynamic.centre - way.start * dynamic.centre,
+        way: motion.end * dynamic.centre - motion.start * dynamic.centre,
     };
     (attachment.body.centre.is_finite() && attachment.way.is_finite()).then_some(attachment)
 }

@@ -10,12 +10,12 @@ use crate::{
     solver::{Body, Obstacle, Shape, Solid},
 };
 use error::ColliderError;
-use likeness::Likeness;
+use scale_mismatch::ScaleMismatchWarning;
 
 pub(crate) mod error;
-mod likeness;
 #[cfg(feature = "mesh_colliders")]
 pub(crate) mod mesh;
+mod scale_mismatch;
 mod solid;
 
 /// An obstacle for cloth, moved by its `Transform`.
@@ -143,7 +143,7 @@ pub(crate) struct ColliderMemory {
     /// Why the collider was left out, of which a warning has told.
     said: Option<ColliderError>,
     /// Whether it is what is seen.
-    likeness: Likeness,
+    scale_mismatch: ScaleMismatchWarning,
     /// What it is made of, where it is no primitive.
     #[cfg(feature = "mesh_colliders")]
     triangles: mesh::Triangles,
@@ -219,7 +219,7 @@ pub(crate) fn gather_obstacles(
             Ok(Some((shape, end))) => {
                 let start = memory.come_to(entity, end, &jumps);
                 memory.said = None;
-                memory.likeness.tell(entity);
+                memory.scale_mismatch.tell(entity);
                 let friction = collider.friction;
                 let obstacle = Obstacle { shape, start, end, rounding: 0.0, friction, body: None };
                 obstacles.list.push((entity, collider.layers, obstacle));
@@ -270,7 +270,7 @@ impl ColliderMemory {
         let placed = match &collider.shape {
             ColliderShape::Solid(solid) => {
                 let pose = pose().ok_or(ColliderError::NoSize)?;
-                self.likeness.look(solid, &pose);
+                self.scale_mismatch.look(solid, &pose);
                 let (solid, pose) = solid::placed(*solid, pose)?;
                 Some((Shape::Solid(solid), pose))
             }

@@ -3,7 +3,7 @@
 use avian3d::{dynamics::rigid_body::RigidBodyQueryReadOnly, parry::shape::SharedShape, prelude::RigidBodyDisabled};
 use bevy::prelude::*;
 
-use super::gather::mover;
+use super::gather::body_pose;
 use crate::{
     engine::{self, Bridge},
     state::{ClothAttachments, ClothState, ClothStatus, StepInput},
@@ -19,7 +19,7 @@ pub(super) fn attach_pins(
     let of = |entity| {
         let mut line = core::iter::once(entity).chain(parents.iter_ancestors(entity));
         let body = line.find_map(|entity| bodies.get(entity).ok())?;
-        Some((body.entity, mover(&body)))
+        Some((body.entity, body_pose(&body)))
     };
     for (cloth, status, state, attachments, mut input) in &mut cloths {
         if *status == ClothStatus::Ready {

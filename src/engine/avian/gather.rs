@@ -16,7 +16,7 @@ use bevy::{
 
 use super::{ClothAvianSettings, shapes};
 use crate::{
-    engine::{Bridge, Dynamic, Met, Mover, NotClothCollider, friction_factor},
+    engine::{BodyPose, Bridge, Dynamic, EngineCollider, NotClothCollider, friction_factor},
     frame::JumpDetection,
     surroundings::collider::{ClothCollider, Obstacles},
 };
@@ -60,19 +60,20 @@ pub(super) fn gather_colliders(
             continue;
         }
         let friction = it.friction.or(body.as_ref().and_then(|(body, ..)| body.friction)).unwrap_or(&default_friction);
-        let own = || (it.entity, Mover { pose: pose(it.position, it.rotation), dynamic: None }, Isometry3d::IDENTITY);
-        let (body, mover, place) = match &body {
-            Some((body, ..)) => (body.entity, mover(body), it.place.map_or(Isometry3d::IDENTITY, place)),
+        let own =
+            || (it.entity, BodyPose { pose: pose(it.position, it.rotation), dynamic: None }, Isometry3d::IDENTITY);
+        let (body, body_pose, place) = match &body {
+            Some((body, ..)) => (body.entity, body_pose(body), it.place.map_or(Isometry3d::IDENTITY, place)),
             None => own(),
         };
         let shape = it.collider.shape_scaled();
         let parts = bridge.shapes.parts(shapes::address(shape), shape, || shapes::convert(it.entity, &**shape));
-        bridge.meet(Met {
+        bridge.add(EngineCollider {
             collider: it.entity,
             layers: layers.memberships.0,
             friction: friction_factor(friction.dynamic_coefficient),
             body,
-            mover,
+            body_pose,
             place,
             parts,
         });
@@ -88,7 +89,7 @@ fn place(place: &ColliderTransform) -> Isometry3d {
     Isometry3d::new(place.translation, place.rotation.0)
 }
 
-pub(super) fn mover(body: &RigidBodyQueryReadOnlyItem) -> Mover {
+pub(super) fn body_pose(body: &RigidBodyQueryReadOnlyItem) -> BodyPose {
     let dynamic = body.rb.is_dynamic().then(|| Dynamic {
         velocity: body.linear_velocity.0,
         // Along locked axes the body doesn't go where cloth pushes it; what it gets there is lost.
@@ -96,5 +97,5 @@ pub(super) fn mover(body: &RigidBodyQueryReadOnlyItem) -> Mover {
         inverse_inertia: Mat3A::from(Mat3::from(body.effective_global_angular_inertia().inverse())),
         centre: body.center_of_mass.0.into(),
     });
-    Mover { pose: pose(body.position, body.rotation), dynamic }
+    BodyPose { pose: pose(body.position, body.rotation), dynamic }
 }

@@ -7,7 +7,7 @@ use bevy_rapier3d::{
     prelude::RapierRigidBodyHandle,
 };
 
-use super::gather::mover;
+use super::gather::body_pose;
 use crate::{
     engine::{self, Bridge},
     state::{ClothAttachments, ClothState, ClothStatus, StepInput},
@@ -25,7 +25,7 @@ pub(super) fn attach_pins(
         let mut line = core::iter::once(entity).chain(parents.iter_ancestors(entity));
         let (entity, (context, handle)) = line.find_map(|entity| Some((entity, handles.get(entity).ok()?)))?;
         let body = contexts.get(context.0).ok()?.bodies.get(handle.0)?;
-        body.is_enabled().then(|| (entity, mover(body)))
+        body.is_enabled().then(|| (entity, body_pose(body)))
     };
     for (cloth, status, state, attachments, mut input) in &mut cloths {
         if *status == ClothStatus::Ready {

@@ -13,7 +13,7 @@ use bevy_rapier3d::{
 
 use super::{ClothRapierSettings, shapes};
 use crate::{
-    engine::{Bridge, Dynamic, Met, Mover, NotClothCollider, friction_factor},
+    engine::{BodyPose, Bridge, Dynamic, EngineCollider, NotClothCollider, friction_factor},
     frame::JumpDetection,
     surroundings::collider::{ClothCollider, Obstacles},
 };
@@ -40,25 +40,25 @@ pub(super) fn gather_colliders(
             continue;
         }
         let body = collider.parent().and_then(|handle| bodies.bodies.get(handle).zip(bodies.rigid_body_entity(handle)));
-        let (body, mover, place) = match body {
+        let (body, body_pose, place) = match body {
             Some((_, body)) if left_out.contains(body) => continue,
             Some((body, entity)) => {
                 let place = collider.position_wrt_parent().map_or(Isometry3d::IDENTITY, shapes::isometry);
-                (entity, mover(body), place)
+                (entity, body_pose(body), place)
             }
             None => {
-                let mover = Mover { pose: shapes::isometry(collider.position()), dynamic: None };
-                (entity, mover, Isometry3d::IDENTITY)
+                let body_pose = BodyPose { pose: shapes::isometry(collider.position()), dynamic: None };
+                (entity, body_pose, Isometry3d::IDENTITY)
             }
         };
         let shape = collider.shared_shape();
         let parts = bridge.shapes.parts(shapes::address(shape), shape, || shapes::convert(entity, &**shape));
-        bridge.meet(Met {
+        bridge.add(EngineCollider {
             collider: entity,
             layers: groups.memberships.bits(),
             friction: friction_factor(collider.friction()),
             body,
-            mover,
+            body_pose,
             place,
             parts,
         });
@@ -71,7 +71,7 @@ fn are_met(collider: InteractionGroups, cloth: CollisionGroups) -> bool {
     collider.memberships.bits() & cloth.filters.bits() != 0 && cloth.memberships.bits() & collider.filter.bits() != 0
 }
 
-pub(super) fn mover(body: &RigidBody) -> Mover {
+pub(super) fn body_pose(body: &RigidBody) -> BodyPose {
     let mass = body.mass_properties();
     let inertia = mass.effective_world_inv_inertia;
     let columns = [
@@ -86,5 +86,5 @@ pub(super) fn mover(body: &RigidBody) -> Mover {
         inverse_inertia: Mat3A::from(Mat3::from_cols(columns[0], columns[1], columns[2])),
         centre: body.local_center_of_mass().into(),
     });
-    Mover { pose: shapes::isometry(body.position()), dynamic }
+    BodyPose { pose: shapes::isometry(body.position()), dynamic }
 }
