@@ -8,6 +8,7 @@ use crate::{
     solver::{self, SourceMesh, Topology, build::weld::NO_PARTICLE},
 };
 
+mod assemble;
 mod candidate;
 pub(crate) mod plan;
 pub(crate) mod system;
