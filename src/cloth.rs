@@ -3,8 +3,9 @@
 use bevy::prelude::*;
 
 use crate::{
-    error::{ClothError, check},
+    error::ClothError,
     fabric::Fabric,
+    parameter::{Parameter, check_parameters},
     pins::Pins,
     solver::{LevelPass, Method, SelfCollision, SubstepPolicy, Topology},
     state::{
@@ -62,48 +63,67 @@ impl From<ClothSolver> for Method {
 pub struct Cloth {
     /// How it is moved on in time.
     pub solver: ClothSolver,
-    /// Largest strain of threads that is aimed at, no unit, if their stiffness can hold it: 0.001 to 0.1. What
-    /// [`ClothSolver::Strands`] chooses [`substeps`](Self::substeps) and [`levels`](Self::levels) by, where they aren't
-    /// set by hand. The smaller, the more it costs, and the livelier the cloth.
+    /// Largest strain of threads that is aimed at, if their stiffness can hold it, no unit, greater than 0, 0.01 by default.
+    /// 0.001 to 0.1. Substeps follow from it where they aren't set by hand. The smaller, the more it costs, and the livelier
+    /// the cloth.
+    ///
+    /// [`ClothSolver::Strands`] chooses [`substeps`](Self::substeps) and [`levels`](Self::levels) by it.
+    #[reflect(@Parameter::positive("", (0.001, 0.1)).logarithmic(0.001).entered((0.0001, 1.0)))]
     pub max_strain: f32,
-    /// Substeps per step, at least 1. `None` for as many as [`max_strain`](Self::max_strain) needs; on a mesh without rows and
+    /// Substeps per step, 1 to 10 000, `None` by default: as many as it takes. 2 to 8 for strands, 8 and more for XPBD. Twice
+    /// as many cost twice the time and let cloth stretch half to a third as much.
+    ///
+    /// `None` is for as many as [`max_strain`](Self::max_strain) needs; on a mesh without rows and
     /// columns at least 8, three for each ten vertices along a side, and up to 32 where triangles are narrow; at least 8 near
     /// obstacles, in a hand and without tethers; half as many more with [`SelfCollision::Robust`], 16 at least; three times
     /// as many, 32 at least, near solids with edges, and thin ones, and twice that near tips. With [`ClothSolver::Xpbd`] for 8.
+    #[reflect(@Parameter::within("", (1.0, 10_000.0), (1.0, 64.0)).whole().entered((1.0, 1000.0)))]
     pub substeps: Option<u32>,
     /// Iterations of the coarse levels of [`ClothSolver::Strands`] in each substep, of which only cloth with tethers has
     /// any. `None` for those that [`max_strain`](Self::max_strain) or the [`substeps`](Self::substeps) need, an empty list
     /// for none of them.
     pub levels: Option<Vec<LevelPass>>,
-    /// The most substeps that [`ClothSolver::Explicit`] may take per step. Where that isn't enough, stiffness and
-    /// damping are cut down to what is stable, and one warning says so.
+    /// The most substeps per step that [`ClothSolver::Explicit`] may take, 1 to 10 000, 512 by default. 100 to 2000. Where
+    /// that isn't enough, stiffness and damping are cut down to what is stable, and one warning says so.
+    #[reflect(@Parameter::within("", (1.0, 10_000.0), (1.0, 2000.0)).whole())]
     pub max_substeps: u32,
-    /// Factor on [`ClothGravity`], no unit. 0 floats, negative rises.
+    /// Factor on [`ClothGravity`] for this cloth, no unit, 1 by default. 0 floats, negative rises.
+    #[reflect(@Parameter::finite("", (-1.0, 3.0)).entered((-1e3, 1e3)))]
     pub gravity_scale: f32,
-    /// By how much of its length a tether gives, no unit, 0 or more; 0.002 to 0.01 for cloth. `None` for no tethers. It
-    /// comes on top of what the fabric's own weight stretches it, which shows with knits.
+    /// By how much of its length a tether gives, no unit, 0 or more, 0.005 by default, `None` for no tethers. 0.002 to 0.01
+    /// for cloth: more lets it stretch, less makes it tremble.
     ///
-    /// Tethers keep every particle within the cloth's own length of its pins: the cure for cloth that stretches like
-    /// rubber. [`ClothSolver::Explicit`] hasn't them.
+    /// It comes on top of what the fabric's own weight stretches it, which shows with knits. Tethers keep every particle
+    /// within the cloth's own length of its pins: the cure for cloth that stretches like rubber. [`ClothSolver::Explicit`]
+    /// hasn't them.
+    #[reflect(@Parameter::not_negative("", (0.0, 0.05)).entered((0.0, 10.0)))]
     pub tether_slack: Option<f32>,
-    /// Largest speed of a particle relative to what the cloth is pinned to, m/s, greater than 0. It keeps single
-    /// particles from thrashing about; 50 is faster than any storm.
+    /// Largest speed of a particle relative to what the cloth is pinned to, in m/s, greater than 0, 50 by default, which is
+    /// faster than any storm. Less calms single particles that thrash about.
+    #[reflect(@Parameter::positive("m/s", (1.0, 100.0)).logarithmic(1.0).entered((0.01, 10_000.0)))]
     pub max_velocity: f32,
-    /// Density of the air around in kg/m³. 1.225 at sea level, 0 for a vacuum.
+    /// Density of the air around in kg/m³, 0 or more, 1.225 by default: how hard wind pushes and how much still air brakes.
+    /// 1.225 at sea level, 0 for a vacuum.
+    #[reflect(@Parameter::not_negative("kg/m³", (0.0, 3.0)).entered((0.0, 1e3)))]
     pub fluid_density: f32,
-    /// Distance in m that the cloth keeps from obstacles beyond its fabric's thickness, 0 or more. 0.002 to 0.02: the more the
-    /// larger its triangles are, so that no corner of an obstacle shows between its particles. More than a quarter of the
-    /// cloth's width counts as that, with one warning.
+    /// Distance in m that the cloth keeps from obstacles beyond its fabric's thickness, 0 or more, 0.005 by default. 0.002 to
+    /// 0.02: the more the larger its triangles are, so that no corner of an obstacle shows between its particles. More than a
+    /// quarter of the cloth's width counts as that, with one warning.
+    #[reflect(@Parameter::not_negative("m", (0.0, 0.05)).entered((0.0, 10.0)).shown_as("mm", 1e3))]
     pub collision_margin: f32,
     /// The most in m/s that cloth which finds itself inside of an obstacle, or too near to other cloth, leaves it by,
-    /// greater than 0. 0.5 to 3: more gets out sooner, and looks like a blow.
+    /// greater than 0, 1 by default. 0.5 to 3: more gets out sooner, and looks like a blow.
+    #[reflect(@Parameter::positive("m/s", (0.1, 5.0)).logarithmic(0.1).entered((0.001, 1000.0)).titled("Leaving speed"))]
     pub max_depenetration_velocity: f32,
     /// How the cloth collides with itself, and with other cloths for which this isn't off either. Off by default, since it costs.
     pub self_collision: SelfCollision,
-    /// Distance in m that parts of cloth keep from each other, greater than 0. 0.002 to 0.01. Parts that are nearer to each
-    /// other at rest stay so. More than four edges of the mesh count as four.
+    /// Distance in m that parts of cloth keep from each other, greater than 0, 0.004 by default. 0.002 to 0.01: less lies
+    /// closer, more is safer in a rush. Parts that are nearer to each other at rest stay so. More than four edges of the mesh
+    /// count as four.
+    #[reflect(@Parameter::positive("m", (0.001, 0.02)).entered((0.000_01, 10.0)).shown_as("mm", 1e3))]
     pub self_distance: f32,
-    /// Coulomb friction of cloth on cloth, no unit, 0 or more. 0.1 for silk, 0.4 for wool.
+    /// Coulomb friction of cloth on cloth, no unit, 0 or more, 0.3 by default. 0.1 for silk, 0.4 for wool.
+    #[reflect(@Parameter::not_negative("", (0.0, 1.0)).entered((0.0, 100.0)))]
     pub self_friction: f32,
     /// Layers that the cloth is in for other cloths, one a bit. Two meet where each is in the other's mask.
     pub collision_layers: u32,
@@ -136,10 +156,8 @@ impl Default for Cloth {
     }
 }
 
-/// A step of more substeps than this would look like a program that hangs.
-const MOST_SUBSTEPS: u32 = 10_000;
-
-/// The same for the iterations of a level.
+/// A step of more iterations of a level than this, as one of more substeps than are accepted, would look like a program that
+/// hangs.
 const MOST_ITERATIONS: u32 = 1000;
 
 /// Substeps of [`ClothSolver::Xpbd`], where they aren't set.
@@ -169,23 +187,12 @@ impl Cloth {
     ///
     /// [`ClothError::InvalidParameter`] with the first field that is out of its range.
     pub fn validate(&self) -> Result<(), ClothError> {
-        let count = |name, value: u32| check(name, value as f32, (1..=MOST_SUBSTEPS).contains(&value), "1 to 10000");
-        let strain = self.max_strain;
-        check("Cloth::max_strain", strain, strain > 0.0, "greater than 0")?;
-        count("Cloth::substeps", self.substeps.unwrap_or(1))?;
+        check_parameters(self, |_| true)?;
         let iterations = self.levels.iter().flatten().map(|level| level.iterations).max().unwrap_or(0);
-        check("Cloth::levels", iterations as f32, iterations <= MOST_ITERATIONS, "0 to 1000 iterations")?;
-        count("Cloth::max_substeps", self.max_substeps)?;
-        check("Cloth::gravity_scale", self.gravity_scale, true, "finite")?;
-        let slack = self.tether_slack.unwrap_or_default();
-        check("Cloth::tether_slack", slack, slack >= 0.0, "0 or greater, or `None`")?;
-        check("Cloth::max_velocity", self.max_velocity, self.max_velocity > 0.0, "greater than 0 m/s")?;
-        let air = self.fluid_density;
-        check("Cloth::fluid_density", air, air >= 0.0, "0 kg/m³ or greater")?;
-        check("Cloth::collision_margin", self.collision_margin, self.collision_margin >= 0.0, "0 m or greater")?;
-        let leaving = self.max_depenetration_velocity;
-        check("Cloth::max_depenetration_velocity", leaving, leaving > 0.0, "greater than 0 m/s")?;
-        check("Cloth::self_distance", self.self_distance, self.self_distance > 0.0, "greater than 0 m")?;
-        check("Cloth::self_friction", self.self_friction, self.self_friction >= 0.0, "0 or greater")
+        if iterations > MOST_ITERATIONS {
+            let (value, rule) = (iterations as f32, format!("0 to {MOST_ITERATIONS} iterations"));
+            return Err(ClothError::InvalidParameter { name: "Cloth::levels".into(), value, rule });
+        }
+        Ok(())
     }
 }

@@ -67,12 +67,3 @@ pub enum ClothError {
         rule: String,
     },
 }
-
-/// Returns an error unless `value` is finite and `accepted`.
-pub(crate) fn check(name: &str, value: f32, accepted: bool, rule: &str) -> Result<(), ClothError> {
-    if value.is_finite() && accepted {
-        Ok(())
-    } else {
-        Err(ClothError::InvalidParameter { name: name.into(), value, rule: rule.into() })
-    }
-}

@@ -312,6 +312,7 @@ struct Readme;
 mod cloth;
 mod error;
 mod fabric;
+mod parameter;
 mod pins;
 mod state;
 

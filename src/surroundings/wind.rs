@@ -7,6 +7,7 @@ use bevy::{
 
 use crate::{
     frame::Poses,
+    parameter::{Parameter, check_parameters},
     solver::{Ellipsoid, Gusts, WindRegion, WindSource},
 };
 
@@ -25,20 +26,29 @@ use crate::{
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(Transform, WindMemory)]
 pub struct Wind {
-    /// Mean velocity in m/s, in the entity's own space. 2 is a light breeze, 8 a fresh one, 20 a gale. From about 3 on,
-    /// wind lifts light cloth that only lies on something: give it a region then.
+    /// Mean velocity in m/s, in the entity's own space, 0 by default. 2 is a light breeze, 8 a fresh one, 20 a gale. From about
+    /// 3 on, wind lifts light cloth that only lies on something: give it a region then.
+    #[reflect(@Parameter::finite("m/s", (0.0, 30.0)).entered((0.0, 200.0)).titled("Wind speed"))]
     pub velocity: Vec3,
     /// Where it blows.
     pub region: WindShape,
-    /// Width in m of the edge, inside of the region, over which the wind dies down.
+    /// Width in m of the edge, inside of the region, over which the wind dies down, 0 or more, 0.5 by default.
+    #[reflect(@Parameter::not_negative("m", (0.0, 5.0)))]
     pub edge: f32,
-    /// Strength of gusts as a share of the mean speed. 0 for none, 0.5 for gusty, 1 for calm to double.
+    /// Strength of gusts as a share of the mean speed, no unit, 0 or more, 0.4 by default. 0 for none, 0.5 for gusty, 1 for
+    /// calm to double.
+    #[reflect(@Parameter::not_negative("", (0.0, 1.5)).entered((0.0, 10.0)))]
     pub gusts: f32,
-    /// Time from gust to gust in s. 2 to 10.
+    /// Time from gust to gust in s, 0 or more, 4 by default. 2 to 10.
+    #[reflect(@Parameter::not_negative("s", (0.5, 20.0)).logarithmic(0.5).entered((0.01, 1e4)))]
     pub gust_period: f32,
-    /// Strength of eddies as a share of the mean speed. 0 for none, 0.1 over open land, 0.3 in a town.
+    /// Strength of eddies as a share of the mean speed, no unit, 0 or more, 0.15 by default. 0 for none, 0.1 over open land,
+    /// 0.3 in a town.
+    #[reflect(@Parameter::not_negative("", (0.0, 1.0)).entered((0.0, 10.0)))]
     pub turbulence: f32,
-    /// Size of the eddies in m. 0.3 to 5. A cloth of more than three of them feels them coarser than they are.
+    /// Size of the eddies in m, 0 or more, 1 by default. 0.3 to 5: small ones ripple the cloth, large ones sway it. A cloth of
+    /// more than three of them feels them coarser than they are.
+    #[reflect(@Parameter::not_negative("m", (0.1, 10.0)).logarithmic(0.1).entered((0.01, 1e4)))]
     pub eddy_size: f32,
     /// Seed of gusts and eddies: the same seed blows the same on every run.
     pub seed: u32,
@@ -74,8 +84,9 @@ pub enum WindShape {
 }
 
 impl Wind {
-    /// The wind in the world. None where a value isn't finite or a size is negative.
-    fn placed(&self, transform: &GlobalTransform) -> Option<WindSource> {
+    /// The wind in the world, or what is wrong with it.
+    fn placed(&self, transform: &GlobalTransform) -> Result<WindSource, String> {
+        check_parameters(self, |_| true).map_err(|error| error.to_string())?;
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
         let pose = Isometry3d::new(translation, rotation);
         let (region, size) = match self.region {
@@ -99,11 +110,11 @@ impl Wind {
         // Turned, and mirrored, as the entity is, and as fast at any scale.
         let direction = transform.affine().matrix3 * Vec3A::from(self.velocity);
         let velocity = direction.normalize_or_zero() * self.velocity.length();
-        let shares = [self.edge, self.gusts, self.gust_period, self.turbulence, self.eddy_size];
-        let is_valid = shares.iter().chain([&size]).all(|v| v.is_finite() && *v >= 0.0)
-            && velocity.is_finite()
-            && pose.translation.is_finite();
-        is_valid.then_some(WindSource {
+        let is_placed = size.is_finite() && size >= 0.0 && velocity.is_finite() && pose.translation.is_finite();
+        if !is_placed {
+            return Err("give it a finite speed and transform, and a region of a finite size of zero or more".into());
+        }
+        Ok(WindSource {
             velocity,
             gusts: Gusts {
                 strength: self.gusts,
@@ -171,13 +182,15 @@ pub(crate) fn gather_winds(
 ) {
     winds.list.clear();
     for (entity, wind, mut memory) in &mut sources {
-        let pose = poses.compute_global_transform(entity).ok();
+        let pose = poses.compute_global_transform(entity).map_err(|error| error.to_string());
         let placed = pose.and_then(|pose| wind.placed(&pose));
-        if placed.is_none() && !memory.warned {
-            warn!("wind {entity} is left out: give it finite values, and sizes of zero or more");
+        if let Err(cause) = &placed
+            && !memory.warned
+        {
+            warn!("wind {entity} is left out: {cause}");
         }
-        memory.warned = placed.is_none();
-        if let Some(wind) = placed {
+        memory.warned = placed.is_err();
+        if let Ok(wind) = placed {
             let WindMemory { travelled, gusts_passed, .. } = *memory;
             let mut wind = WindSource { travelled, gusts_passed, ..wind };
             wind.advance(time.delta_secs());

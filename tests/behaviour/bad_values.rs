@@ -172,7 +172,7 @@ fn the_message_names_the_field_and_the_rule() {
         ),
         (
             Fabric { bending_rigidity: -0.5, ..default() },
-            "Fabric::bending_rigidity is -0.5, and it has to be 0 or greater;",
+            "Fabric::bending_rigidity is -0.5, and it has to be 0 N·m or greater;",
         ),
         (Fabric { compression: 1.5, ..default() }, "Fabric::compression is 1.5, and it has to be 0 to 1;"),
         (

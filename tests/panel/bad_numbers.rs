@@ -27,14 +27,14 @@ const FIELDS: [(&str, usize); 31] = [
     ("Drag", 1),
     ("Lift", 1),
     ("Damping", 1),
-    ("Most stretch", 1),
+    ("Max strain", 1),
     ("Substeps", 1),
     ("Tether slack", 1),
-    ("Largest speed", 1),
-    ("Contact margin", 1),
+    ("Max velocity", 1),
+    ("Collision margin", 1),
     ("Gravity, m/s²", 3),
     ("Gravity scale", 1),
-    ("Air density", 1),
+    ("Fluid density", 1),
     ("Heading", 1),
     ("Elevation", 1),
     ("Wind speed", 1),
@@ -116,7 +116,7 @@ fn what_is_out_of_range_becomes_the_nearest_within() {
     desk.type_value("Wind speed", "1e30");
     assert_eq!(desk.get::<Wind>(wind).velocity, Vec3::X * 200.0);
     desk.choose(Role::ComboBox, "Solver", "Explicit");
-    desk.type_value("Most substeps", "1e9");
+    desk.type_value("Max substeps", "1e9");
     assert_eq!(desk.get::<Cloth>(cloth).max_substeps, 10_000);
 }
 

@@ -42,13 +42,13 @@ fn every_value_can_be_typed() {
         ("Drag", "1"),
         ("Lift", "0.1"),
         ("Damping", "0.5"),
-        ("Most stretch", "0.03"),
+        ("Max strain", "0.03"),
         ("Substeps", "17"),
         ("Tether slack", "0.02"),
-        ("Largest speed", "30 m/s"),
-        ("Contact margin", "8 mm"),
+        ("Max velocity", "30 m/s"),
+        ("Collision margin", "8 mm"),
         ("Gravity scale", "-0.5"),
-        ("Air density", "1.5"),
+        ("Fluid density", "1.5"),
     ] {
         desk.type_value(name, text);
     }
@@ -107,7 +107,7 @@ fn the_solver_and_its_own_settings_can_be_chosen() {
     assert!(desk.controls(Role::Slider, "Substeps").next().is_none(), "they are chosen");
     desk.choose(Role::ComboBox, "Solver", "Explicit");
     assert_eq!(desk.get::<Cloth>(cloth).solver, ClothSolver::Explicit);
-    desk.type_value("Most substeps", "700");
+    desk.type_value("Max substeps", "700");
     assert_eq!(desk.get::<Cloth>(cloth), &Cloth { solver: ClothSolver::Explicit, max_substeps: 700, ..default() });
     assert!(desk.controls(Role::Slider, "Tether slack").next().is_none(), "it has no tethers");
 }

@@ -5,19 +5,10 @@ use bevy_egui::egui::{Label, RichText, Ui};
 use super::{
     ClothChoice,
     control::{Naming, button, buttons, choice, entry, explain, menu, naming, row},
-    knob::Knob,
+    knob,
     model::{Ask, Model},
 };
 use crate::pins::{ClothEdge, Pins};
-
-const SPEED: Knob = Knob::new(
-    "Game speed",
-    "×",
-    (0.02, 2.0),
-    (0.001, 10.0),
-    "Speed of the whole game's clock, not of cloth alone: 1 is real time, 0.1 slow motion. 0.05 to 2.",
-)
-.logarithmic(0.02);
 
 /// The choice of a cloth.
 pub(super) fn show_choice(ui: &mut Ui, model: &mut Model) {
@@ -72,7 +63,7 @@ pub(super) fn show_clock(ui: &mut Ui, model: &mut Model) {
     const RESUME: Naming = naming("Resume", "Lets the whole game's clock go on.");
     const STEP: Naming =
         naming("Step", "Lets the whole game's clock go on for one fixed time step while it is paused.");
-    SPEED.show(ui, &mut clock.speed, false);
+    knob::show(ui, clock, "speed", false);
     buttons(ui, "clock", |ui| {
         if button(ui, if clock.is_paused { RESUME } else { PAUSE }, true) {
             clock.is_paused ^= true;
@@ -145,7 +136,7 @@ fn show_copies(ui: &mut Ui, model: &Model) {
 }
 
 /// What can be pinned.
-fn pins() -> [(Naming, Pins); 6] {
+fn pins() -> [(Naming<'static>, Pins); 6] {
     const SHEET: &str = "Needs UVs that go over the sheet once.";
     [
         (naming("Corners", "The corners of a sheet of quads."), Pins::corners()),

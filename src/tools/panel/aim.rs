@@ -4,12 +4,17 @@ use core::f32::consts::PI;
 
 use bevy::{math::ops, prelude::*};
 
+use crate::parameter::Parameter;
+
 /// Direction and speed.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 pub(super) struct Aim {
-    /// Where to, seen from above, in degrees: 0 along +Z, 90 along +X, as a rotation about Y turns.
+    /// Where the wind blows to, seen from above, in degrees: 0 along +Z, 90 along +X, as a rotation about Y turns. The wind's
+    /// entity turns it further.
+    #[reflect(@Parameter::within("°", (-360.0, 360.0), (-180.0, 180.0)))]
     pub heading: f32,
-    /// How steeply upwards, in degrees.
+    /// How steeply the wind blows upwards, in degrees. 0 for along the ground.
+    #[reflect(@Parameter::within("°", (-90.0, 90.0), (-90.0, 90.0)))]
     pub elevation: f32,
     /// m/s.
     pub speed: f32,

@@ -9,12 +9,12 @@ const NAME_WIDTH: f32 = 96.0;
 
 /// What a control is called, and what it does: with the unit, a sensible range, and what to expect.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Naming {
-    pub name: &'static str,
-    pub hover: &'static str,
+pub(super) struct Naming<'a> {
+    pub name: &'a str,
+    pub hover: &'a str,
 }
 
-pub(super) const fn naming(name: &'static str, hover: &'static str) -> Naming {
+pub(super) const fn naming<'a>(name: &'a str, hover: &'a str) -> Naming<'a> {
     Naming { name, hover }
 }
 
@@ -36,7 +36,7 @@ impl From<bool> for Aside<'_> {
 /// A row with a name and, behind it, what `content` adds and joins to the name's response.
 pub(super) fn row<'a, R>(
     ui: &mut Ui,
-    naming: Naming,
+    naming: Naming<'_>,
     aside: impl Into<Aside<'a>>,
     content: impl FnOnce(&mut Ui, Response) -> (Response, R),
 ) -> R {
@@ -72,12 +72,12 @@ fn group<R>(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
 }
 
 /// A row that shows a value and changes nothing.
-pub(super) fn reading(ui: &mut Ui, naming: Naming, value: String) {
+pub(super) fn reading(ui: &mut Ui, naming: Naming<'_>, value: String) {
     row(ui, naming, false, |ui, name| (name | ui.add(Label::new(value).selectable(false)), ()));
 }
 
 /// A box to tick.
-pub(super) fn tick(ui: &mut Ui, naming: Naming, differs: bool, is_on: &mut bool) -> bool {
+pub(super) fn tick(ui: &mut Ui, naming: Naming<'_>, differs: bool, is_on: &mut bool) -> bool {
     let before = *is_on;
     row(ui, naming, differs, |ui, name| {
         let tick = ui.checkbox(is_on, "").labelled_by(name.id);
@@ -87,12 +87,12 @@ pub(super) fn tick(ui: &mut Ui, naming: Naming, differs: bool, is_on: &mut bool)
 }
 
 /// A button, among [`buttons`]. True once it is pressed.
-pub(super) fn button(ui: &mut Ui, naming: Naming, is_enabled: bool) -> bool {
+pub(super) fn button(ui: &mut Ui, naming: Naming<'_>, is_enabled: bool) -> bool {
     explain(ui.add_enabled(is_enabled, Button::new(naming.name)), naming.hover).clicked()
 }
 
 /// A button that opens a menu.
-pub(super) fn menu(ui: &mut Ui, naming: Naming, content: impl FnOnce(&mut Ui)) {
+pub(super) fn menu(ui: &mut Ui, naming: Naming<'_>, content: impl FnOnce(&mut Ui)) {
     explain(ui.menu_button(format!("{} ⏷", naming.name), content).response, naming.hover);
 }
 
@@ -108,7 +108,7 @@ pub(super) fn entry(ui: &mut Ui, naming: Naming) -> bool {
 /// A row with a list to choose from. `entries` are what is chosen, its name and its explanation.
 pub(super) fn choice<'a, T: Copy + PartialEq>(
     ui: &mut Ui,
-    naming: Naming,
+    naming: Naming<'_>,
     aside: impl Into<Aside<'a>>,
     chosen: Option<T>,
     otherwise: &str,
@@ -130,7 +130,7 @@ pub(super) fn choice<'a, T: Copy + PartialEq>(
 }
 
 /// A part of the panel that can be folded.
-pub(super) fn section(ui: &mut Ui, naming: Naming, is_open: bool, content: impl FnOnce(&mut Ui)) {
+pub(super) fn section(ui: &mut Ui, naming: Naming<'_>, is_open: bool, content: impl FnOnce(&mut Ui)) {
     group(ui, naming.name, |ui| {
         let section = CollapsingHeader::new(RichText::new(naming.name).strong()).default_open(is_open);
         explain(section.show_unindented(ui, content).header_response, naming.hover);

@@ -44,7 +44,7 @@ impl Switches {
     }
 }
 
-type Switch = (Naming, fn(&mut ClothDebugView) -> &mut bool);
+type Switch = (Naming<'static>, fn(&mut ClothDebugView) -> &mut bool);
 
 /// What can be drawn of a cloth.
 const SWITCHES: [Switch; 8] = [

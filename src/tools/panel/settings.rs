@@ -6,6 +6,7 @@ use super::{aim::Aim, code, fields, memory::Memory};
 use crate::{
     cloth::Cloth,
     fabric::{ClothSprings, Fabric, handle::FabricHandle},
+    parameter::Parameter,
     surroundings::{ClothGravity, wind::Wind},
 };
 
@@ -24,10 +25,11 @@ pub(super) struct Settings {
 }
 
 /// The game's clock.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 pub(super) struct Clock {
     pub is_paused: bool,
-    /// Of the real one's speed.
+    /// Speed of the whole game's clock, not of cloth alone: 1 is real time, 0.1 slow motion. 0.05 to 2.
+    #[reflect(@Parameter::positive("×", (0.02, 2.0)).logarithmic(0.02).entered((0.001, 10.0)).titled("Game speed"))]
     pub speed: f32,
 }
 

@@ -4,7 +4,7 @@ use bevy_egui::egui::{Label, RichText, Ui};
 
 use super::{
     control::{Naming, choice, naming, section, tick},
-    knob::Knob,
+    knob,
     model::Model,
 };
 use crate::cloth::{Cloth, ClothSolver};
@@ -15,64 +15,19 @@ const MOST_ADVICE: usize = 3;
 /// Substeps to begin with where they are set by hand.
 const BEGUN_SUBSTEPS: u32 = 8;
 
-const MAX_STRAIN: Knob = Knob::new(
-    "Most stretch",
-    "",
-    (0.001, 0.1),
-    (0.0001, 1.0),
-    "The most that threads are to be stretched, without a unit, if their stiffness can hold it. 0.001 to 0.1. Substeps are \
-     chosen by it. The smaller, the more it costs, and the livelier the cloth.",
-)
-.logarithmic(0.001);
 const BY_HAND: Naming = naming(
     "Substeps by hand",
-    "Sets the number of substeps. Without it, they follow from the most stretch, and are 8 at least near obstacles.",
+    "Sets the number of substeps. Without it, they follow from the largest strain, and are 8 at least near obstacles.",
 );
-const SUBSTEPS: Knob = Knob::new(
-    "Substeps",
-    "",
-    (1.0, 64.0),
-    (1.0, 1000.0),
-    "Substeps per step. 2 to 8 for strands, 8 and more for XPBD. Twice as many cost twice the time and let cloth stretch \
-     half to a third as much.",
-)
-.whole();
 const LEVELS: Naming = naming(
     "Coarse levels",
     "Pulls travel far across the cloth in few substeps. Strands only; without them, fine meshes stretch more.",
 );
-const MAX_VELOCITY: Knob = Knob::new(
-    "Largest speed",
-    "m/s",
-    (1.0, 100.0),
-    (0.01, 10_000.0),
-    "The most that a particle may be faster than what the cloth is pinned to, in m/s. 50 is faster than any storm; less \
-     calms particles that thrash about.",
-)
-.logarithmic(1.0);
-const MAX_SUBSTEPS: Knob = Knob::new(
-    "Most substeps",
-    "",
-    (1.0, 2000.0),
-    (1.0, 10_000.0),
-    "The most substeps per step that the explicit solver may take. 100 to 2000. Where that isn't enough, it runs with \
-     less stiffness and damping, and the panel says so.",
-)
-.whole();
 const TETHERS: Naming = naming(
     "Tethers",
     "Keeps every particle within the cloth's own length of its pins: the cure for cloth that stretches like rubber. Not \
      for the explicit solver.",
 );
-const SLACK: Knob = Knob::new(
-    "Tether slack",
-    "",
-    (0.0, 0.05),
-    (0.0, 10.0),
-    "By how much of its length a tether gives, without a unit. 0.002 to 0.01 for cloth: more lets it stretch, less makes \
-     it tremble.",
-);
-
 const SOLVERS: [(ClothSolver, &str, &str); 3] = [
     (ClothSolver::Strands, "Strands", "Each thread solved exactly: the least stretch for the time. For games."),
     (ClothSolver::Xpbd, "XPBD", "Spring by spring: stable as well, and stretched more."),
@@ -90,20 +45,20 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
         }
         match cloth.solver {
             ClothSolver::Strands => {
-                MAX_STRAIN.show(ui, &mut cloth.max_strain, differs("max_strain"));
+                knob::show(ui, cloth, "max_strain", differs("max_strain"));
                 show_substeps(ui, cloth, differs("substeps"));
                 show_levels(ui, cloth, differs("levels"));
                 show_tethers(ui, cloth, differs("tether_slack"));
-                MAX_VELOCITY.show(ui, &mut cloth.max_velocity, differs("max_velocity"));
+                knob::show(ui, cloth, "max_velocity", differs("max_velocity"));
             }
             ClothSolver::Xpbd => {
                 show_substeps(ui, cloth, differs("substeps"));
                 show_tethers(ui, cloth, differs("tether_slack"));
-                MAX_VELOCITY.show(ui, &mut cloth.max_velocity, differs("max_velocity"));
+                knob::show(ui, cloth, "max_velocity", differs("max_velocity"));
             }
             ClothSolver::Explicit => {
-                MAX_SUBSTEPS.show_count(ui, &mut cloth.max_substeps, differs("max_substeps"));
-                MAX_VELOCITY.show(ui, &mut cloth.max_velocity, differs("max_velocity"));
+                knob::show(ui, cloth, "max_substeps", differs("max_substeps"));
+                knob::show(ui, cloth, "max_velocity", differs("max_velocity"));
             }
         }
         show_advice(ui, model);
@@ -115,9 +70,7 @@ fn show_substeps(ui: &mut Ui, cloth: &mut Cloth, differs: bool) {
     if tick(ui, BY_HAND, differs, &mut is_on) {
         cloth.substeps = is_on.then_some(BEGUN_SUBSTEPS);
     }
-    if let Some(substeps) = &mut cloth.substeps {
-        SUBSTEPS.show_count(ui, substeps, differs);
-    }
+    knob::show(ui, cloth, "substeps", differs);
 }
 
 fn show_levels(ui: &mut Ui, cloth: &mut Cloth, differs: bool) {
@@ -132,9 +85,7 @@ fn show_tethers(ui: &mut Ui, cloth: &mut Cloth, differs: bool) {
     if tick(ui, TETHERS, differs, &mut is_on) {
         cloth.tether_slack = is_on.then_some(Cloth::default().tether_slack.unwrap_or_default());
     }
-    if let Some(slack) = &mut cloth.tether_slack {
-        SLACK.show(ui, slack, differs);
-    }
+    knob::show(ui, cloth, "tether_slack", differs);
 }
 
 fn show_advice(ui: &mut Ui, model: &Model) {
