@@ -140,8 +140,7 @@ impl<'a> Parts<'a> {
         surroundings: &Surroundings,
         pool: Option<&'a TaskPool>,
     ) -> Option<Self> {
-        let InForce { settings, policy } = cloth.in_force;
-        let margin = cloth.in_force.collision_margin(&cloth.state);
+        let InForce { settings, solver } = cloth.in_force;
         let state = &mut *cloth.state;
         let material = state.material?;
         state.step_start.clone_from(&state.particles.position);
@@ -157,33 +156,20 @@ impl<'a> Parts<'a> {
             jump,
             ..
         } = &mut *cloth.input;
-        surroundings.obstacles.around(*origin, settings.collision_mask, *jump, near, owners);
+        surroundings.obstacles.around(*origin, solver.collision_filter, *jump, near, owners);
         surroundings.winds.around(*origin, felt);
         let ctx = StepContext {
-            dt,
-            method: settings.solver.into(),
-            effort: policy,
-            max_substeps: settings.max_substeps,
-            material,
             gravity: (gravity * settings.gravity_scale).into(),
+            fluid_density: settings.fluid_density,
             pin_motions,
             body_attachments,
             attached_pins,
             grabs,
-            max_velocity: settings.max_velocity,
             tethers: settings.tether_slack.map(|_| cloth.attachments.as_tethers()),
-            tether_slack: settings.tether_slack.unwrap_or_default(),
-            margin,
-            max_depenetration_velocity: settings.max_depenetration_velocity,
-            self_collision: settings.self_collision,
-            collision_layers: settings.collision_layers,
-            collision_mask: settings.collision_mask,
-            self_distance: settings.self_distance,
-            self_friction: settings.self_friction,
             obstacles: near,
-            fluid_density: settings.fluid_density,
             winds: felt,
             pool,
+            ..StepContext::new(dt, solver, material)
         };
         Some(Self { particles, topology, ctx, origin: *origin })
     }

@@ -7,7 +7,7 @@ use bevy_drape::{
     build,
     prelude::{ClothGrid, ClothSprings, Fabric},
     solver::{
-        Elasticity, Material, Method, Particles, PinMotion, Scratch, SelfCollision, StepContext, SubstepPolicy,
+        Elasticity, Material, Method, Particles, PinMotion, Scratch, StepContext, StepSettings, SubstepPolicy,
         Topology, step,
     },
 };
@@ -45,35 +45,17 @@ fn hang(criterion: &mut Criterion) {
         let mut particles = Particles::at_rest(rest, &topology, &material);
         particles.set_masses(&topology, &material, |i| pins.contains(&(i as u32)));
         let tethers = build::tethers(&topology, &pins);
-        let effort = match method {
+        let substep_policy = match method {
             Method::Strands => SubstepPolicy::to_hold(0.005, &topology),
             Method::Xpbd | Method::Explicit => SubstepPolicy::fixed(8, Vec::new()),
         };
+        let settings = StepSettings { method, substep_policy, tether_slack: 0.002, ..StepSettings::default() };
         let ctx = StepContext {
-            dt: 1.0 / 60.0,
-            method,
-            effort: &effort,
-            max_substeps: 512,
-            material,
             gravity: Vec3A::NEG_Y * 9.81,
-            pin_motions: &pin_motions,
-            body_attachments: &[],
-            attached_pins: &[],
-            grabs: &[],
-            max_velocity: 50.0,
-            tethers: Some(&tethers),
-            tether_slack: 0.002,
-            margin: 0.005,
-            max_depenetration_velocity: 1.0,
-            self_collision: SelfCollision::Off,
-            collision_layers: 1,
-            collision_mask: 1,
-            self_distance: 0.004,
-            self_friction: 0.3,
-            obstacles: &[],
             fluid_density: air,
-            winds: &[],
-            pool: None,
+            pin_motions: &pin_motions,
+            tethers: Some(&tethers),
+            ..StepContext::new(1.0 / 60.0, &settings, material)
         };
         let mut scratch = Scratch::default();
         group.bench_function(BenchmarkId::new(name, n), |bencher| {

@@ -116,7 +116,8 @@ fn line(name: &str, options: &Options, mesh: &MeshSource, scene: &Scene, substep
 
 /// The coarse levels as the option writes them.
 pub fn levels(cloth: &Cloth) -> String {
-    let levels = cloth.rig.effort.levels.iter().map(|level| format!("{}x{}", level.stride, level.iterations));
+    let levels =
+        cloth.rig.settings.substep_policy.levels.iter().map(|level| format!("{}x{}", level.stride, level.iterations));
     let levels: Vec<String> = levels.collect();
     if levels.is_empty() { "none".into() } else { levels.join(",") }
 }

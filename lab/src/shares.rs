@@ -31,8 +31,8 @@ const PARTS: [(&str, fn(&mut Options)); 5] = [
 pub fn of_frame(options: &Options) -> io::Result<Value> {
     // Without tethers a cloth would choose more substeps.
     let grid = &MeshSource::Grid;
-    let effort = hang(options, grid, PinnedPart::Corners)?.cloths.swap_remove(0).rig.effort;
-    let whole = Options { substeps: Some(effort.substeps), levels: Levels::Set(effort.levels), ..options.clone() };
+    let policy = hang(options, grid, PinnedPart::Corners)?.cloths.swap_remove(0).rig.settings.substep_policy;
+    let whole = Options { substeps: Some(policy.substeps), levels: Levels::Set(policy.levels), ..options.clone() };
     let mut settings = vec![whole];
     for (_, leave_out) in PARTS {
         let mut less = settings[settings.len() - 1].clone();

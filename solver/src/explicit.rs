@@ -25,7 +25,7 @@ const MORE_STRETCHED: f32 = 0.2;
 pub(crate) struct Stability {
     /// Substeps that it takes.
     pub needed: u32,
-    /// Share of stiffness and damping that [`max_substeps`](StepContext::max_substeps) of them can carry: 1 unless more
+    /// Share of stiffness and damping that [`max_substeps`](crate::StepSettings::max_substeps) of them can carry: 1 unless more
     /// would be needed.
     pub scale: f32,
     /// Length over rest length beyond which faces may get no stiffer.
@@ -65,7 +65,7 @@ pub(crate) fn stability(
     // The positive root of ω² h² + 2 γ h = STABLE, written so that ω = 0 needs no special case.
     let longest = STABLE / (gamma + (gamma * gamma + STABLE * omega_squared).sqrt());
     let needed = (dt / longest).ceil().max(1.0);
-    let most = ctx.max_substeps.max(1);
+    let most = ctx.settings.max_substeps.max(1);
     let h = dt / most as f32;
     let is_enough = needed <= most as f32;
     let scale = if is_enough { 1.0 } else { STABLE / (omega_squared * h * h + 2.0 * gamma * h) };

@@ -33,9 +33,9 @@ pub mod topology;
 pub use crate::{
     build::{MeshError, SourceMesh, Welded, build, grab_tethers, tethers},
     input::{
-        AttachedPin, Body, BodyAttachment, BodyDisplacement, BodyImpulse, Grab, GrabTether, Gusts, MAX_TIME_STEP,
-        Method, Obstacle, PinMotion, SelfCollision, StepContext, SubstepPolicy, Tether, Tethers, WindRegion,
-        WindSource,
+        AttachedPin, Body, BodyAttachment, BodyDisplacement, BodyImpulse, CollisionFilter, Grab, GrabTether, Gusts,
+        MAX_TIME_STEP, Method, Obstacle, PinMotion, SelfCollision, StepContext, StepSettings, SubstepPolicy, Tether,
+        Tethers, WindRegion, WindSource,
     },
     layout::simd::SimdLevel,
     material::{Elasticity, Material, Moduli, SpringConstants, SpringLaw},

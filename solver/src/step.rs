@@ -82,7 +82,7 @@ pub struct Member<'a> {
 
 /// Advances cloths that may touch each other, substep by substep, by the time step that they share.
 ///
-/// Those whose [`self_collision`](StepContext::self_collision) isn't off meet each other. All take as many substeps as the
+/// Those whose [`self_collision`](crate::StepSettings::self_collision) isn't off meet each other. All take as many substeps as the
 /// one that needs most.
 pub fn step_together(members: &mut [Member]) {
     let Some(first) = members.first_mut() else { return };
@@ -160,7 +160,7 @@ impl<'a> Plan<'a> {
         // Nothing else asks for it: a cloth that nothing is near needs no surface.
         let longest_edge = if is_near { feature::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
-        let touches = ctx.self_collision != SelfCollision::Off;
+        let touches = ctx.settings.self_collision != SelfCollision::Off;
         let is_on_body = !ctx.attached_pins.is_empty();
         let some = match () {
             () if is_near => Some(SubstepReason::Obstacle),
@@ -170,24 +170,25 @@ impl<'a> Plan<'a> {
             () if !is_tethered => Some(SubstepReason::Untethered),
             () => None,
         };
-        let risk = match (feature::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.self_collision) {
-            (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
-            (Some((Sharpness::Edge, wanted)), _) => ContactRisk::Edge(wanted),
-            (None, SelfCollision::Robust) => ContactRisk::Robust,
-            (None, _) if some.is_some() => ContactRisk::Some,
-            (None, _) => ContactRisk::None,
-        };
-        let (wanted, levels) = ctx.effort.of_step(risk, dt);
-        let (without_risk, _) = ctx.effort.of_step(ContactRisk::None, dt);
-        let reason = match ctx.method {
+        let risk =
+            match (feature::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.settings.self_collision) {
+                (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
+                (Some((Sharpness::Edge, wanted)), _) => ContactRisk::Edge(wanted),
+                (None, SelfCollision::Robust) => ContactRisk::Robust,
+                (None, _) if some.is_some() => ContactRisk::Some,
+                (None, _) => ContactRisk::None,
+            };
+        let (wanted, levels) = ctx.settings.substep_policy.of_step(risk, dt);
+        let (without_risk, _) = ctx.settings.substep_policy.of_step(ContactRisk::None, dt);
+        let reason = match ctx.settings.method {
             Method::Explicit => SubstepReason::Stability,
-            Method::Strands | Method::Xpbd if !ctx.effort.follows_time_step => SubstepReason::Fixed,
+            Method::Strands | Method::Xpbd if !ctx.settings.substep_policy.follows_time_step => SubstepReason::Fixed,
             Method::Strands | Method::Xpbd if wanted == without_risk => SubstepReason::Strain,
             Method::Strands | Method::Xpbd => SubstepReason::of_risk(risk, some.unwrap_or_default()),
         };
         // Levels move what hangs on a body without its weight on the body.
         let levels = if is_on_body { &[] } else { levels };
-        let (most, stability, levels) = match ctx.method {
+        let (most, stability, levels) = match ctx.settings.method {
             Method::Strands => (u32::MAX, Stability::unconditional(wanted), levels),
             Method::Xpbd => (u32::MAX, Stability::unconditional(wanted), &[][..]),
             Method::Explicit => {
@@ -195,7 +196,7 @@ impl<'a> Plan<'a> {
                 grab::take_up(&mut scratch.lanes, ctx.grabs);
                 scratch.body_attachments.begin(&mut scratch.lanes, topology, ctx);
                 let stability = explicit::stability(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
-                (ctx.max_substeps.max(1), stability, &[][..])
+                (ctx.settings.max_substeps.max(1), stability, &[][..])
             }
         };
         let substeps = stability.needed.min(most);
@@ -256,8 +257,11 @@ impl<'a> Running<'a> {
             stability,
             is_pushed,
             is_near,
-            touches: ctx.self_collision != SelfCollision::Off || is_near,
-            limit: SpeedLimit { around: pin_motion::mean_velocity(ctx.pin_motions, dt), most: ctx.max_velocity },
+            touches: ctx.settings.self_collision != SelfCollision::Off || is_near,
+            limit: SpeedLimit {
+                around: pin_motion::mean_velocity(ctx.pin_motions, dt),
+                most: ctx.settings.max_velocity,
+            },
             helpers,
             last: StrandDirection::between(ctx.pin_motions, topology.order()),
             levels,
@@ -293,7 +297,7 @@ impl<'a> Running<'a> {
             substep.renew_steady_force(particles, *air_interval, scratch);
         }
         grab::carry(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
-        if ctx.method == Method::Explicit {
+        if ctx.settings.method == Method::Explicit {
             substep.add_spring_forces(particles, scratch);
         }
         if !self.has_moved {
@@ -309,9 +313,9 @@ impl<'a> Running<'a> {
         // Hands, and forces that are renewed, come first.
         let is_renewed = substep.is_pushed && (i + 1).is_multiple_of(*air_interval);
         let goes_on = i + 1 < self.substeps && ctx.grabs.is_empty() && !is_renewed;
-        self.has_moved = goes_on && ctx.method != Method::Explicit;
+        self.has_moved = goes_on && ctx.settings.method != Method::Explicit;
         self.is_finished = false;
-        match ctx.method {
+        match ctx.settings.method {
             Method::Strands => {
                 grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
                 self.is_finished = substep.solve_strands(scratch, self.has_moved);
@@ -339,7 +343,7 @@ impl<'a> Running<'a> {
             };
         }
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
-        let is_constrained = ctx.method != Method::Explicit || substep.touches || !ctx.grabs.is_empty();
+        let is_constrained = ctx.settings.method != Method::Explicit || substep.touches || !ctx.grabs.is_empty();
         if !self.is_finished && is_constrained {
             let Scratch { lanes, applied_force, simd_level, .. } = &mut **scratch;
             integrate::finish(&mut lanes.whole(), substep.finish(applied_force, self.has_moved), *simd_level);
@@ -433,7 +437,7 @@ fn load(
 
 /// The threads that share the work, where it pays: all springs are on the lattice, and neither hands nor bodies hold it.
 fn helpers<'a>(topology: &'a Topology, ctx: &StepContext<'a>) -> Option<(&'a TaskPool, &'a Lattice)> {
-    let is_woven = ctx.method == Method::Strands && topology.batches.iter().all(|batch| batch.woven);
+    let is_woven = ctx.settings.method == Method::Strands && topology.batches.iter().all(|batch| batch.woven);
     let is_large = topology.particle_count() >= grid_substep::LARGE;
     let is_free = ctx.grabs.is_empty() && ctx.attached_pins.is_empty();
     ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_woven && is_free)

@@ -7,7 +7,7 @@ use crate::state::{ClothState, Warned};
 
 /// Says so where a cloth is too small for the margin that it is given, once until it isn't.
 pub(crate) fn warn_if_too_large(entity: Entity, state: &ClothState, in_force: &InForce, warned: &mut Warned) {
-    let (given, kept) = (in_force.settings.collision_margin, in_force.collision_margin(state));
+    let (given, kept) = (in_force.settings.collision_margin, in_force.solver.margin);
     let is_less = kept < given;
     if is_less && !warned.margin {
         warn!(

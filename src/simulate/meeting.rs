@@ -10,8 +10,8 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{Cloth, InForce},
-    solver::{MAX_TIME_STEP, SelfCollision},
+    cloth::InForce,
+    solver::{MAX_TIME_STEP, SelfCollision, StepSettings},
     state::{ClothAttachments, ClothReport, ClothState, StepInput},
 };
 
@@ -33,19 +33,17 @@ const GAINED: f32 = 0.02;
 /// Puts cloths that may touch each other within `dt` seconds together, in the order of their entities.
 pub(super) fn group<'w, 's>(ready: Vec<SteppedItem<'w, 's>>, dt: f32) -> Vec<Vec<SteppedItem<'w, 's>>> {
     let (mut meeting, alone): (Vec<_>, Vec<_>) =
-        ready.into_iter().partition(|cloth| cloth.in_force.settings.self_collision != SelfCollision::Off);
+        ready.into_iter().partition(|cloth| cloth.in_force.solver.self_collision != SelfCollision::Off);
     meeting.sort_unstable_by_key(|cloth| cloth.entity);
     let boxes: Vec<Option<Aabb3d>> =
-        meeting.iter().map(|cloth| reached(&cloth.state, &cloth.in_force.settings, dt)).collect();
+        meeting.iter().map(|cloth| reached(&cloth.state, &cloth.in_force.solver, dt)).collect();
+    let filter = |i: usize| meeting[i].in_force.solver.collision_filter;
     // The first of each cloth's group.
     let mut leader: Vec<usize> = (0..meeting.len()).collect();
     for i in 0..meeting.len() {
         for j in 0..i {
             let (Some(one), Some(other)) = (&boxes[i], &boxes[j]) else { continue };
-            if leader[i] != leader[j]
-                && may_meet(&meeting[i].in_force.settings, &meeting[j].in_force.settings)
-                && one.intersects(other)
-            {
+            if leader[i] != leader[j] && filter(i).meets(filter(j)) && one.intersects(other) {
                 let (first, last) = (leader[i].min(leader[j]), leader[i].max(leader[j]));
                 leader.iter_mut().filter(|leader| **leader == last).for_each(|leader| *leader = first);
             }
@@ -60,14 +58,8 @@ pub(super) fn group<'w, 's>(ready: Vec<SteppedItem<'w, 's>>, dt: f32) -> Vec<Vec
     groups
 }
 
-/// Whether each of two cloths is in the other's mask.
-fn may_meet(one: &Cloth, other: &Cloth) -> bool {
-    let meets = |one: &Cloth, other: &Cloth| one.collision_mask & other.collision_layers != 0;
-    meets(one, other) && meets(other, one)
-}
-
 /// Box around what a cloth may reach within a step, in the world; none of a cloth that is nowhere.
-fn reached(state: &ClothState, settings: &Cloth, dt: f32) -> Option<Aabb3d> {
+fn reached(state: &ClothState, settings: &StepSettings, dt: f32) -> Option<Aabb3d> {
     let (particles, dt) = (&state.particles, dt.min(MAX_TIME_STEP));
     let origin = Vec3A::from(state.origin);
     let ends = |(&place, &velocity): (&Vec3A, &Vec3A)| [origin + place, origin + place + velocity * dt];
@@ -76,7 +68,7 @@ fn reached(state: &ClothState, settings: &Cloth, dt: f32) -> Option<Aabb3d> {
     let (low, high) = places.fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
     let bounds = Aabb3d { min: low, max: high };
     // Far from the world's origin, places are rounded.
-    let Cloth { self_collision, self_distance, .. } = *settings;
+    let StepSettings { self_collision, self_distance, .. } = *settings;
     let distance = self_collision.distance_on(&state.topology, self_distance);
     let margin = distance + GAINED + 1e-6 * origin.abs().max_element();
     (low.is_finite() && high.is_finite()).then(|| bounds.grow(Vec3A::splat(margin)))

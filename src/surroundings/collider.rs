@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::{
     frame::{FromLatestStep, Jump, JumpDetection, PastPose, Poses},
-    solver::{Body, Obstacle, Shape, Solid},
+    solver::{Body, CollisionFilter, Obstacle, Shape, Solid},
 };
 use error::ColliderError;
 use scale_mismatch::ScaleMismatchWarning;
@@ -179,12 +179,12 @@ impl Obstacles {
         self.list.iter().map(|(entity, layers, obstacle)| (*entity, *layers, obstacle))
     }
 
-    /// Writes the obstacles that `mask` selects into `near`, relative to `origin`, and whose they are into `owners`. For a
+    /// Writes the obstacles that `filter` selects into `near`, relative to `origin`, and whose they are into `owners`. For a
     /// cloth that has made a `jump`.
     pub(crate) fn around(
         &self,
         origin: Vec3,
-        mask: u32,
+        filter: CollisionFilter,
         jump: Option<Jump>,
         near: &mut Vec<Obstacle>,
         owners: &mut Vec<Entity>,
@@ -192,7 +192,7 @@ impl Obstacles {
         let origin = Vec3A::from(origin);
         let start = |start: Isometry3d, end| jump.map_or(start, |jump| jump.start_of(start, end));
         let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - origin, pose.rotation);
-        let selected = || self.list.iter().filter(|(_, layers, _)| layers & mask != 0);
+        let selected = || self.list.iter().filter(|(_, layers, _)| filter.selects(*layers));
         near.clear();
         near.extend(selected().map(|(_, _, obstacle)| Obstacle {
             start: relative(start(obstacle.start, &obstacle.end)),

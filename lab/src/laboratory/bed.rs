@@ -8,7 +8,7 @@ use bevy_drape::{
     build,
     prelude::Fabric,
     solver::{
-        Material, Method, Obstacle, Particles, PinMotion, Scratch, SelfCollision, StepContext, SubstepPolicy, Tethers,
+        Material, Method, Obstacle, Particles, PinMotion, Scratch, StepContext, StepSettings, SubstepPolicy, Tethers,
         Topology, step,
     },
 };
@@ -110,32 +110,21 @@ impl Bed {
 
     /// One step.
     pub fn step(&mut self) {
-        let effort = SubstepPolicy::fixed(self.substeps, Vec::new());
-        let ctx = StepContext {
-            dt: self.dt,
+        let settings = StepSettings {
             method: self.method,
-            effort: &effort,
+            substep_policy: SubstepPolicy::fixed(self.substeps, Vec::new()),
             max_substeps: u32::MAX,
-            material: self.material,
-            gravity: self.gravity,
-            pin_motions: &self.pin_motions,
-            body_attachments: &[],
-            attached_pins: &[],
-            grabs: &[],
             max_velocity: 100.0,
-            tethers: self.tethers.as_ref(),
-            tether_slack: 0.005,
             margin: 0.0,
-            max_depenetration_velocity: 1.0,
-            self_collision: SelfCollision::Off,
-            collision_layers: 1,
-            collision_mask: 1,
-            self_distance: 0.004,
-            self_friction: 0.3,
-            obstacles: &self.obstacles,
+            ..StepSettings::default()
+        };
+        let ctx = StepContext {
+            gravity: self.gravity,
             fluid_density: self.fluid_density,
-            winds: &[],
-            pool: None,
+            pin_motions: &self.pin_motions,
+            tethers: self.tethers.as_ref(),
+            obstacles: &self.obstacles,
+            ..StepContext::new(self.dt, &settings, self.material)
         };
         step(&mut self.particles, &self.topology, &ctx, &mut self.scratch);
     }

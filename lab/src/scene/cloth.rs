@@ -1,7 +1,7 @@
 //! One cloth of a scene, and what it hangs by.
 
 use bevy::{math::Vec3A, prelude::*};
-use bevy_drape::solver::{Particles, PinMotion, Scratch, SubstepPolicy, Tethers, Topology};
+use bevy_drape::solver::{Particles, PinMotion, Scratch, StepSettings, Tethers, Topology};
 
 /// A cloth.
 pub struct Cloth {
@@ -15,11 +15,11 @@ pub struct Cloth {
     pub tethers_ms: f64,
 }
 
-/// What a cloth hangs by, and how much work is made for it.
+/// What a cloth hangs by, and how it is solved.
 pub struct Rig {
     pub pin_motions: Vec<PinMotion>,
     pub tethers: Option<Tethers>,
-    pub effort: SubstepPolicy,
+    pub settings: StepSettings,
 }
 
 impl Cloth {

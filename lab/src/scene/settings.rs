@@ -11,7 +11,7 @@ use bevy_drape::{
     prelude::ClothGrid,
     solver::{
         Elasticity, LevelPass, Material, Method, Particles, Scratch, SelfCollision, SpringConstants, SpringKind,
-        SubstepPolicy, Topology,
+        StepSettings, SubstepPolicy, Topology,
     },
 };
 
@@ -66,9 +66,23 @@ impl Settings {
         }
     }
 
+    /// How a cloth of this mesh is solved.
+    fn solver(&self, topology: &Topology) -> StepSettings {
+        StepSettings {
+            method: self.method,
+            substep_policy: self.substep_policy(topology),
+            max_substeps: u32::MAX,
+            tether_slack: self.tether_slack,
+            margin: self.margin,
+            self_collision: self.self_collision,
+            self_distance: self.self_distance,
+            ..StepSettings::default()
+        }
+    }
+
     /// Substeps and levels for a mesh.
-    pub fn effort(&self, topology: &Topology) -> SubstepPolicy {
-        let mut effort = match (self.method, self.substeps) {
+    fn substep_policy(&self, topology: &Topology) -> SubstepPolicy {
+        let mut policy = match (self.method, self.substeps) {
             (Method::Strands, None) => SubstepPolicy::to_hold(self.max_strain, topology),
             (Method::Strands, Some(substeps)) => {
                 SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, topology))
@@ -76,10 +90,10 @@ impl Settings {
             (_, substeps) => SubstepPolicy::fixed(substeps.unwrap_or(8), Vec::new()),
         };
         if let Some(levels) = &self.levels {
-            effort.levels.clone_from(levels);
-            effort.contact_levels.clone_from(levels);
+            policy.levels.clone_from(levels);
+            policy.contact_levels.clone_from(levels);
         }
-        effort
+        policy
     }
 
     /// Time of all frames, s.
@@ -110,7 +124,7 @@ impl Settings {
         let rest = topology.rest.iter().copied().map(Vec3A::from).collect();
         Ok(Cloth {
             particles: Particles::at_rest(rest, &topology, &self.material),
-            rig: Rig { pin_motions: Vec::new(), tethers: None, effort: self.effort(&topology) },
+            rig: Rig { pin_motions: Vec::new(), tethers: None, settings: self.solver(&topology) },
             scratch: Scratch::default(),
             topology,
             build_ms,

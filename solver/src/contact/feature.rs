@@ -62,15 +62,15 @@ const AGAIN_AT_OBSTACLES: u32 = 8;
 
 /// Whether two cloths meet, or one itself.
 fn meet(one: &StepContext, other: &StepContext) -> bool {
-    let is_on = one.self_collision != SelfCollision::Off && other.self_collision != SelfCollision::Off;
+    let is_on =
+        one.settings.self_collision != SelfCollision::Off && other.settings.self_collision != SelfCollision::Off;
     let is_same = core::ptr::eq(one, other);
-    let is_in = one.collision_layers & other.collision_mask != 0 && other.collision_layers & one.collision_mask != 0;
-    is_on && (is_same || is_in)
+    is_on && (is_same || one.settings.collision_filter.meets(other.settings.collision_filter))
 }
 
 /// How deep triangles of a cloth may sink into obstacles, m.
 fn sink(ctx: &StepContext) -> f32 {
-    ctx.margin.max(SINK).max(SINK_OF_DISTANCE * ctx.contact_distance())
+    ctx.settings.margin.max(SINK).max(SINK_OF_DISTANCE * ctx.contact_distance())
 }
 
 /// Length of a cloth's longest edge, m: that at rest, or twice that where the cloth is stretched and something is `near` that fits
@@ -95,7 +95,7 @@ pub fn longest_edge<'a>(
     let Some(way) = ways.reduce(f32::max) else { return at_rest };
     let place = |i: u32| particles.position[i as usize];
     let longest = surface.edges().map(|[p, q]| place(p).distance_squared(place(q))).fold(0.0, f32::max).sqrt();
-    let outrun = at_rest + way / ctx.effort.contact_substeps as f32;
+    let outrun = at_rest + way / ctx.settings.substep_policy.contact_substeps as f32;
     if longest.max(outrun) > STRETCHED * at_rest { 2.0 * at_rest } else { at_rest }
 }
 
@@ -148,12 +148,12 @@ pub(crate) trait ClothInStep {
 
     /// Whether it meets itself or other cloths.
     fn collides(&self) -> bool {
-        self.ctx().self_collision != SelfCollision::Off
+        self.ctx().settings.self_collision != SelfCollision::Off
     }
 
     /// Distance that it keeps from cloth, m.
     fn self_distance(&self, mode: SelfCollision) -> f32 {
-        mode.distance_on(self.topology(), self.ctx().self_distance)
+        mode.distance_on(self.topology(), self.ctx().settings.self_distance)
     }
 
     /// Its triangles.
@@ -315,7 +315,8 @@ impl FeatureContacts {
         if !(self.pairs.is_empty() && self.tangles.is_empty()) {
             self.lead_fixed(cloths, span.clone());
             self.points.has_parted = false;
-            let most_parted = cloths.iter().map(|cloth| cloth.ctx().max_depenetration_velocity).fold(0.0, f32::max) * h;
+            let most_parted =
+                cloths.iter().map(|cloth| cloth.ctx().settings.max_depenetration_velocity).fold(0.0, f32::max) * h;
             for tangle in &self.tangles {
                 tangle.solve(&mut self.points, most_parted);
             }

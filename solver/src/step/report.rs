@@ -18,7 +18,7 @@ pub struct StepReport {
     pub needed_substeps: u32,
     /// Share of the asked stiffness and damping that was used, 0..=1. Below one when
     /// [`Method::Explicit`](crate::Method::Explicit) would have needed more than
-    /// [`StepContext::max_substeps`](crate::StepContext::max_substeps) substeps for the whole.
+    /// [`StepSettings::max_substeps`](crate::StepSettings::max_substeps) substeps for the whole.
     pub stiffness_scale: f32,
     /// Contacts in the last substep: of particles with obstacles, and of points, edges and faces with each other. Those of cloths
     /// that are stepped together count for the first.

@@ -55,18 +55,18 @@ pub(crate) struct Substep<'a> {
 impl Substep<'_> {
     /// Works out what doesn't change from substep to substep.
     pub fn prepare(&self, scratch: &mut Scratch) {
-        let is_solved = self.ctx.method != Method::Explicit;
-        let woven = self.ctx.method == Method::Xpbd;
+        let is_solved = self.ctx.settings.method != Method::Explicit;
+        let woven = self.ctx.settings.method == Method::Xpbd;
         let bending = || BendSolver::new(self.topology, woven, &self.ctx.material, &scratch.lanes, self.h);
         scratch.bending = is_solved.then(bending).flatten();
         // Threads that share the work have done it already.
-        if self.ctx.method == Method::Strands && self.topology.lattice.is_some() && self.helpers.is_none() {
+        if self.ctx.settings.method == Method::Strands && self.topology.lattice.is_some() && self.helpers.is_none() {
             for band in scratch.lanes.order.bands() {
                 let Run { inverse_mass, row_masses, .. } = scratch.lanes.band(band);
                 grid::masses_along_rows(inverse_mass, band, row_masses, scratch.simd_level);
             }
         }
-        if let Some(lattice) = self.topology.lattice.as_ref().filter(|_| self.ctx.method == Method::Strands) {
+        if let Some(lattice) = self.topology.lattice.as_ref().filter(|_| self.ctx.settings.method == Method::Strands) {
             let Scratch { lanes, bend_factors, worker_scratch, simd_level, .. } = &mut *scratch;
             let strand_material = StrandMaterial::new(&self.ctx.material, self.h);
             bend_factors::prepare(
@@ -118,13 +118,13 @@ impl Substep<'_> {
 
     fn motion<'a>(&self, force: &'a Points) -> Motion<'a> {
         // The other methods see to it when constraints have been solved.
-        let limit = (self.ctx.method == Method::Explicit).then_some(self.limit);
+        let limit = (self.ctx.settings.method == Method::Explicit).then_some(self.limit);
         Motion { force: self.applied(force), limit, ..Motion::free(self.ctx, self.h) }
     }
 
     /// The force that is applied, if one is.
     pub fn applied<'a>(&self, force: &'a Points) -> Option<&'a Points> {
-        (self.is_pushed || self.ctx.method == Method::Explicit).then_some(force)
+        (self.is_pushed || self.ctx.settings.method == Method::Explicit).then_some(force)
     }
 
     /// What ends the substep, and begins the next one where that `goes_on` at once.

@@ -6,7 +6,8 @@ use bevy_math::Vec3A;
 use bevy_tasks::TaskPool;
 use drape_solver::{
     AttachedPin, BodyAttachment, Grab, Material, Member, Method, Obstacle, Particles, PinMotion, Scratch,
-    SelfCollision, SourceMesh, StepContext, StepReport, SubstepPolicy, Tethers, Topology, WindSource, build, step,
+    SelfCollision, SourceMesh, StepContext, StepReport, StepSettings, SubstepPolicy, Tethers, Topology, WindSource,
+    build, step,
 };
 
 use crate::fixtures::mesh::{Grid, topology};
@@ -34,7 +35,7 @@ pub struct Bed {
     pub obstacles: Vec<Obstacle>,
     pub winds: Vec<WindSource>,
     pub method: Method,
-    pub effort: SubstepPolicy,
+    pub substep_policy: SubstepPolicy,
     pub max_substeps: u32,
     pub max_velocity: f32,
     pub margin: f32,
@@ -45,6 +46,8 @@ pub struct Bed {
     /// Its origin from that of the first bed that it is stepped together with, m.
     pub offset: Vec3A,
     pub scratch: Scratch,
+    /// Those of the latest step.
+    pub settings: StepSettings,
 }
 
 impl Bed {
@@ -65,7 +68,7 @@ impl Bed {
             obstacles: Vec::new(),
             winds: Vec::new(),
             method: Method::Strands,
-            effort: SubstepPolicy::fixed(8, Vec::new()),
+            substep_policy: SubstepPolicy::fixed(8, Vec::new()),
             max_substeps: 4096,
             max_velocity: 100.0,
             margin: 0.0,
@@ -75,6 +78,7 @@ impl Bed {
             pool: None,
             offset: Vec3A::ZERO,
             scratch: Scratch::default(),
+            settings: StepSettings::default(),
         }
     }
 
@@ -99,12 +103,12 @@ impl Bed {
         self
     }
 
-    /// A method with the effort that a game makes where it says nothing of it.
+    /// A method with the substeps that a game takes where it says nothing of them.
     pub fn like_a_game(mut self, method: Method) -> Self {
         self.method = method;
         // Strands come after the tethers, and fight those that give nothing; the others keep what they were tested with.
         self.tether_slack = if method == Method::Strands { 0.005 } else { 0.0 };
-        self.effort = match method {
+        self.substep_policy = match method {
             Method::Strands => SubstepPolicy::to_hold(0.01, &self.topology),
             Method::Xpbd | Method::Explicit => SubstepPolicy::fixed(8, Vec::new()),
         };
@@ -113,13 +117,14 @@ impl Bed {
 
     /// All levels that may go with one substep, whatever the substeps. Only strands have any.
     pub fn with_levels(mut self) -> Self {
-        self.effort = SubstepPolicy::fixed(self.effort.substeps, SubstepPolicy::levels_for(1, &self.topology));
+        self.substep_policy =
+            SubstepPolicy::fixed(self.substep_policy.substeps, SubstepPolicy::levels_for(1, &self.topology));
         self
     }
 
     /// So many substeps, without levels.
     pub fn with_substeps(mut self, substeps: u32) -> Self {
-        self.effort = SubstepPolicy::fixed(substeps, Vec::new());
+        self.substep_policy = SubstepPolicy::fixed(substeps, Vec::new());
         self
     }
 
@@ -132,31 +137,28 @@ impl Bed {
     /// What goes into a step of `dt` seconds, for which the winds move on.
     fn parts(&mut self, dt: f32) -> (&mut Particles, &Topology, StepContext<'_>, &mut Scratch) {
         self.winds.iter_mut().for_each(|wind| wind.advance(dt));
+        // Only where it is another: a step of the bed allocates nothing.
+        if self.settings.substep_policy != self.substep_policy {
+            self.settings.substep_policy.clone_from(&self.substep_policy);
+        }
+        self.settings.method = self.method;
+        self.settings.max_substeps = self.max_substeps;
+        self.settings.max_velocity = self.max_velocity;
+        self.settings.tether_slack = self.tether_slack;
+        self.settings.margin = self.margin;
+        self.settings.self_collision = self.self_collision;
         let ctx = StepContext {
-            dt,
-            method: self.method,
-            effort: &self.effort,
-            max_substeps: self.max_substeps,
-            material: self.material,
             gravity: self.gravity,
+            fluid_density: self.fluid_density,
             pin_motions: &self.pin_motions,
             body_attachments: &self.mounts,
             attached_pins: &self.mounted,
             grabs: &self.grabs,
-            max_velocity: self.max_velocity,
             tethers: self.tethers.as_ref(),
-            tether_slack: self.tether_slack,
-            margin: self.margin,
-            max_depenetration_velocity: 1.0,
-            self_collision: self.self_collision,
-            collision_layers: 1,
-            collision_mask: 1,
-            self_distance: 0.004,
-            self_friction: 0.3,
             obstacles: &self.obstacles,
-            fluid_density: self.fluid_density,
             winds: &self.winds,
             pool: self.pool.as_deref(),
+            ..StepContext::new(dt, &self.settings, self.material)
         };
         (&mut self.particles, &self.topology, ctx, &mut self.scratch)
     }

@@ -78,7 +78,7 @@ fn largest_strain(bed: &Bed) -> f32 {
 
 /// The same after three seconds in single steps.
 fn swung(mut bed: Bed) -> Bed {
-    bed.effort = SubstepPolicy::fixed(1, bed.effort.levels);
+    bed.substep_policy = SubstepPolicy::fixed(1, bed.substep_policy.levels);
     bed.run(3.0);
     bed
 }
@@ -105,7 +105,7 @@ fn levels_leave_a_cloth_alone_that_is_nowhere_too_long() {
     let turn = Quat::from_rotation_z(0.3);
     let pressed = |bed: Bed| {
         let mut bed = Bed { gravity: Vec3A::ZERO, ..bed };
-        bed.effort = SubstepPolicy::fixed(1, bed.effort.levels);
+        bed.substep_policy = SubstepPolicy::fixed(1, bed.substep_policy.levels);
         bed.material = springs(Springs::default());
         bed.particles.position.iter_mut().for_each(|p| *p = turn * *p * 0.9);
         for anchor in &mut bed.pin_motions {
@@ -116,12 +116,12 @@ fn levels_leave_a_cloth_alone_that_is_nowhere_too_long() {
         bed
     };
     let (without, with) = (pressed(hung(grid(32))), pressed(hung(grid(32)).with_levels()));
-    assert!(!with.effort.levels.is_empty() && with.fastest() > 0.1);
+    assert!(!with.substep_policy.levels.is_empty() && with.fastest() > 0.1);
     assert_eq!(without.particles, with.particles);
 }
 
 #[test]
-fn an_effort_leaves_a_soft_cloth_without_tethers_the_stretch_of_its_weight() {
+fn the_substeps_to_hold_a_strain_leave_a_soft_cloth_without_tethers_the_stretch_of_its_weight() {
     // Hung by its whole upper edge: nothing but the weight below stretches it.
     let sunk = |bed: Bed| {
         let mut bed = bed.pinned(0..32);
@@ -140,9 +140,9 @@ fn an_effort_leaves_a_soft_cloth_without_tethers_the_stretch_of_its_weight() {
         let bed = Bed::new(Grid::new(1.0, 1.0, 32, 32), springs(constants));
         let expected = sunk(Bed { method: Method::Explicit, ..bed.clone() });
         for max_strain in [0.005, 0.001] {
-            let effort = SubstepPolicy::to_hold(max_strain, &bed.topology);
-            let (substeps, levels) = (effort.substeps, effort.levels.len());
-            let depth = sunk(Bed { effort, ..bed.clone() });
+            let substep_policy = SubstepPolicy::to_hold(max_strain, &bed.topology);
+            let (substeps, levels) = (substep_policy.substeps, substep_policy.levels.len());
+            let depth = sunk(Bed { substep_policy, ..bed.clone() });
             let case = format!("{stiffness} N/m, {substeps} substeps, {levels} levels: {depth} for {expected} m");
             println!("{case}");
             failures.extend(((depth / expected - 1.0).abs() > 0.1).then_some(case));
@@ -155,7 +155,7 @@ fn an_effort_leaves_a_soft_cloth_without_tethers_the_stretch_of_its_weight() {
 fn a_level_that_the_cloth_has_not_or_of_no_iterations_changes_nothing() {
     let after = |levels: Vec<LevelPass>| {
         let mut bed = hung(grid(20));
-        bed.effort = SubstepPolicy::fixed(2, levels);
+        bed.substep_policy = SubstepPolicy::fixed(2, levels);
         bed.run(0.5);
         bed.particles
     };

@@ -11,8 +11,8 @@ use crate::{
 fn hung(method: Method, rate: f32, substeps: u32) -> Bed {
     let material = Material { damping: 3.0, ..springs_in_air(Springs::default()) };
     let bed = Bed::lying(16, material).pinned([0, 15]).tethered(&[0, 15]);
-    let effort = SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, &bed.topology));
-    let mut bed = Bed { method, effort, ..bed };
+    let substep_policy = SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, &bed.topology));
+    let mut bed = Bed { method, substep_policy, ..bed };
     for _ in 0..(8.0 * rate) as u32 {
         bed.step(1.0 / rate);
     }

@@ -38,7 +38,7 @@ proptest! {
         let material = Material { density, ..springs_in_air(constants) };
         let bed = Bed::new(Grid::new(1.0, 1.0, 17, 9), material);
         let mut bed = bed.pinned([0, 16]).tethered(&[0, 16]);
-        bed.effort = SubstepPolicy::fixed(substeps, vec![LevelPass { stride: 4, iterations }]);
+        bed.substep_policy = SubstepPolicy::fixed(substeps, vec![LevelPass { stride: 4, iterations }]);
         bed.max_substeps = 200;
         bed.method = ALL[method];
         for (position, place) in bed.particles.position.iter_mut().zip(places).skip(17) {
@@ -113,7 +113,7 @@ fn assert_mends(constants: Springs, dt: f32, harm: impl FnOnce(&mut Bed)) {
     let mut strains: Vec<f32> = structural.map(|spring| strain(&bed.particles.position, spring)).collect();
     strains.sort_unstable_by(f32::total_cmp);
     let strain = strains[strains.len() * 99 / 100];
-    println!("{} substeps leave a strain of {strain}", bed.effort.substeps);
+    println!("{} substeps leave a strain of {strain}", bed.substep_policy.substeps);
     assert!(strain < 0.02, "a strain of {strain} is left");
 }
 

@@ -1,6 +1,6 @@
 //! Cloths in all that the solver knows, made of nothing but what is exact on any machine.
 //!
-//! Nothing here asks the platform for a sine or an exponential: nothing is turned by an angle, efforts are fixed, and no
+//! Nothing here asks the platform for a sine or an exponential: nothing is turned by an angle, substeps are fixed, and no
 //! velocity is damped, which is a factor of exp(-0). Sums, products, quotients and roots are exact everywhere. The one that is
 //! otherwise says so.
 

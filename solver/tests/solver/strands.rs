@@ -1,4 +1,4 @@
-//! The default solver: threads as a whole, and no more effort than is needed.
+//! The default solver: threads as a whole, and no more substeps than is needed.
 
 use bevy_math::{Isometry3d, Vec3, Vec3A, primitives::InfinitePlane3d};
 use drape_solver::{Method, Obstacle, Solid, SpringKind, SubstepPolicy, measure};
@@ -126,11 +126,11 @@ fn largest_strain(bed: &Bed) -> f32 {
 }
 
 #[test]
-fn the_effort_to_hold_a_strain_holds_it() {
+fn the_substeps_to_hold_a_strain_hold_it() {
     let mut failures = Vec::new();
     for (n, max_strain) in [(32, 0.01), (64, 0.01), (32, 0.005)] {
         let mut bed = hung(n);
-        bed.effort = SubstepPolicy::to_hold(max_strain, &bed.topology);
+        bed.substep_policy = SubstepPolicy::to_hold(max_strain, &bed.topology);
         bed.run(4.0);
         // The mean over a second, as the lab measures it.
         let strains = (0..60).map(|_| {
@@ -138,7 +138,7 @@ fn the_effort_to_hold_a_strain_holds_it() {
             largest_strain(&bed)
         });
         let strain = strains.sum::<f32>() / 60.0;
-        let substeps = bed.effort.substeps;
+        let substeps = bed.substep_policy.substeps;
         let case = format!("{n} x {n}, {substeps} substeps: {strain} for {max_strain}");
         println!("{case}");
         failures.extend((strain > max_strain).then_some(case));
@@ -161,7 +161,8 @@ fn a_hung_cloth_comes_to_rest() {
             let ways = bed.particles.position.iter().zip(&before).map(|(p, q)| p.distance(*q));
             farthest = ways.fold(farthest, f32::max);
         }
-        let case = format!("{method:?}, {n} x {n}, {} substeps: still {farthest} m a frame", bed.effort.substeps);
+        let case =
+            format!("{method:?}, {n} x {n}, {} substeps: still {farthest} m a frame", bed.substep_policy.substeps);
         println!("{case}");
         failures.extend((farthest > 0.001).then_some(case));
     }
@@ -185,7 +186,7 @@ fn more_substeps_are_taken_near_an_obstacle_and_without_tethers() {
         vec![Obstacle::still(shape, pose)]
     };
     let mut bed = hung(16);
-    bed.effort = SubstepPolicy::to_hold(0.1, &bed.topology);
+    bed.substep_policy = SubstepPolicy::to_hold(0.1, &bed.topology);
     bed.obstacles = ground(-3.0);
     assert_eq!(bed.step(FRAME).substeps, 2);
     let tethers = bed.tethers.take();
@@ -202,7 +203,7 @@ fn more_substeps_are_taken_near_an_obstacle_and_without_tethers() {
         last_before_contact = report.substeps;
     }
     assert_eq!(last_before_contact, 8, "they are more before it touches");
-    bed.effort = SubstepPolicy::fixed(2, bed.effort.levels);
+    bed.substep_policy = SubstepPolicy::fixed(2, bed.substep_policy.levels);
     assert_eq!(bed.step(FRAME).substeps, 2, "by hand they are as many everywhere");
     bed.method = Method::Xpbd;
     assert_eq!(bed.step(FRAME).substeps, 2);

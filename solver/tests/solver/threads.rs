@@ -285,21 +285,21 @@ fn threads_move_as_the_textbook_says_when_steps_are_small() {
 }
 
 #[test]
-fn the_effort_to_hold_a_strain_holds_it_on_threads() {
+fn the_substeps_to_hold_a_strain_hold_it_on_threads() {
     let mut failures = Vec::new();
     for (side, max_strain) in [(16, 0.01), (32, 0.01), (32, 0.005)] {
         let mut bed = hung(ell(side));
         bed.material = springs_in_air(Springs::default());
         bed.tether_slack = 0.002;
-        bed.effort = SubstepPolicy::to_hold(max_strain, &bed.topology);
-        assert!(bed.effort.levels.is_empty());
+        bed.substep_policy = SubstepPolicy::to_hold(max_strain, &bed.topology);
+        assert!(bed.substep_policy.levels.is_empty());
         bed.run(3.0);
         let strains = (0..60).map(|_| {
             bed.step(1.0 / 60.0);
             measure::strain(&bed.particles, &bed.topology).largest
         });
         let strain = strains.sum::<f32>() / 60.0;
-        let case = format!("{side} a side, {} substeps: {strain} for {max_strain}", bed.effort.substeps);
+        let case = format!("{side} a side, {} substeps: {strain} for {max_strain}", bed.substep_policy.substeps);
         println!("{case}");
         failures.extend((strain > max_strain).then_some(case));
     }

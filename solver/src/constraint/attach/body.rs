@@ -186,7 +186,7 @@ impl BodyAttachments {
         }
         for (body, mount) in self.bodies.iter_mut().zip(ctx.body_attachments) {
             body.centre = mount.body.centre + mount.way * span.end;
-            body.gain(ctx.max_velocity);
+            body.gain(ctx.settings.max_velocity);
             body.go_on(body.velocity, body.spin, h);
         }
         for held in &mut self.pin_motions {
@@ -208,7 +208,7 @@ impl BodyAttachments {
             body.take(body.turn * held.arm, pull);
         }
         for ((body, mount), pull) in bodies.iter_mut().zip(ctx.body_attachments).zip(&mut *pulls) {
-            let [velocity, spin] = body.gain(ctx.max_velocity);
+            let [velocity, spin] = body.gain(ctx.settings.max_velocity);
             body.go_on(velocity, spin, h);
             *pull = (body.push(&mount.body), BodyDisplacement { shift: body.shift, turn: body.turn });
         }

@@ -18,7 +18,7 @@ impl FeatureContacts {
             let particles = self.first[i] as usize..self.first[i + 1] as usize;
             let (start, way) = (&self.start[particles.clone()], &self.way[particles]);
             // With a ball against a robust cloth, the larger distance counts.
-            let distance = cloth.self_distance(cloth.ctx().self_collision);
+            let distance = cloth.self_distance(cloth.ctx().settings.self_collision);
             let margin = 0.5 * distance + self.slack[i];
             let ways = Displacements { position: start, way };
             let corners = |triangle: [u32; 3]| triangle.map(|i| start[i as usize]);
@@ -59,11 +59,11 @@ impl FeatureContacts {
             false => traversal.between((a.surface, a.places), (b.surface, b.places), |p, q| leaves.push((p, q))),
         }
         // The more careful of the two ways.
-        let mode = cloths[i].ctx().self_collision.max(cloths[j].ctx().self_collision);
+        let mode = cloths[i].ctx().settings.self_collision.max(cloths[j].ctx().settings.self_collision);
         let reach = QueryMargin {
             distance: 0.5 * (cloths[i].self_distance(mode) + cloths[j].self_distance(mode)),
             slack: slack[i] + slack[j],
-            friction: 0.5 * (cloths[i].ctx().self_friction + cloths[j].ctx().self_friction),
+            friction: 0.5 * (cloths[i].ctx().settings.self_friction + cloths[j].ctx().settings.self_friction),
             rest: (i == j).then_some(&*cloths[i].topology().rest),
         };
         for &(p, q) in &*leaves {

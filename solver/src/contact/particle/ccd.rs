@@ -45,7 +45,7 @@ impl ObstacleSweep {
     pub fn new(obstacle: &Obstacle, [start, end]: [Isometry3d; 2], ctx: &StepContext, h: f32) -> Self {
         let distance = ctx.contact_distance() + obstacle.rounding;
         let friction = ctx.material.friction * obstacle.friction;
-        Self { start, end, distance, friction, parting: ctx.max_depenetration_velocity * h }
+        Self { start, end, distance, friction, parting: ctx.settings.max_depenetration_velocity * h }
     }
 
     /// What stays, without a rotation where its `solid` needs none.
