@@ -20,15 +20,15 @@ pub(crate) mod update;
 
 pub(crate) use in_force::InForce;
 
-/// How a cloth is moved on in time. All three read the same physical constants.
+/// Time integrator and constraint solver of a cloth. All three read the same physical constants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothSolver {
-    /// Each thread of a regular mesh solved exactly, and coarse levels for the long waves: the least stretch for the time
+    /// Solves each strand of a regular mesh exactly, and coarse levels for the long waves: the least stretch for the time
     /// that it takes, stable at any stiffness and time step. For games.
     #[default]
     Strands,
-    /// Extended position-based dynamics, one constraint after the other: stable as well, and stretched more.
+    /// Extended position-based dynamics (XPBD), one constraint after the other: stable as well, and stretched more.
     Xpbd,
     /// Forces and symplectic Euler, the textbook form: the most accurate, and many times as costly. It takes the
     /// substeps that stability needs, up to [`Cloth::max_substeps`].
@@ -61,9 +61,9 @@ impl From<ClothSolver> for Method {
 #[require(ClothState, ClothAttachments, ClothGrabs, ClothReport, ClothStatus)]
 #[require(InForce, PendingBuild, Requests, StepInput, Warned)]
 pub struct Cloth {
-    /// How it is moved on in time.
+    /// Time integrator and constraint solver, [`ClothSolver::Strands`] by default.
     pub solver: ClothSolver,
-    /// Largest strain of threads that is aimed at, if their stiffness can hold it, no unit, greater than 0, 0.01 by default.
+    /// Target for the largest strain of springs along warp and weft, if their stiffness can hold it, no unit, greater than 0, 0.01 by default.
     /// 0.001 to 0.1. Substeps follow from it where they aren't set by hand. The smaller, the more it costs, and the livelier
     /// the cloth.
     ///
@@ -79,18 +79,18 @@ pub struct Cloth {
     /// as many, 32 at least, near solids with edges, and thin ones, and twice that near tips. With [`ClothSolver::Xpbd`] for 8.
     #[reflect(@Parameter::within("", (1.0, 10_000.0), (1.0, 64.0)).whole().entered((1.0, 1000.0)))]
     pub substeps: Option<u32>,
-    /// Iterations of the coarse levels of [`ClothSolver::Strands`] in each substep, of which only cloth with tethers has
-    /// any. `None` for those that [`max_strain`](Self::max_strain) or the [`substeps`](Self::substeps) need, an empty list
-    /// for none of them.
+    /// Multigrid passes of [`ClothSolver::Strands`] in each substep: stride and iterations of each coarse level. Only cloth
+    /// with tethers has any. `None`, the default, for those that [`max_strain`](Self::max_strain) or the
+    /// [`substeps`](Self::substeps) need; an empty list for no levels.
     pub levels: Option<Vec<LevelPass>>,
-    /// The most substeps per step that [`ClothSolver::Explicit`] may take, 1 to 10 000, 512 by default. 100 to 2000. Where
+    /// Largest number of substeps per step that [`ClothSolver::Explicit`] may take, 1 to 10 000, 512 by default. 100 to 2000. Where
     /// that isn't enough, stiffness and damping are cut down to what is stable, and one warning says so.
     #[reflect(@Parameter::within("", (1.0, 10_000.0), (1.0, 2000.0)).whole())]
     pub max_substeps: u32,
     /// Factor on [`ClothGravity`] for this cloth, no unit, 1 by default. 0 floats, negative rises.
     #[reflect(@Parameter::finite("", (-1.0, 3.0)).entered((-1e3, 1e3)))]
     pub gravity_scale: f32,
-    /// By how much of its length a tether gives, no unit, 0 or more, 0.005 by default, `None` for no tethers. 0.002 to 0.01
+    /// Share of its length by which a tether may be longer, no unit, 0 or more, 0.005 by default, `None` for no tethers. 0.002 to 0.01
     /// for cloth: more lets it stretch, less makes it tremble.
     ///
     /// It comes on top of what the fabric's own weight stretches it, which shows with knits. Tethers keep every particle
@@ -111,11 +111,12 @@ pub struct Cloth {
     /// quarter of the cloth's width counts as that, with one warning.
     #[reflect(@Parameter::not_negative("m", (0.0, 0.05)).entered((0.0, 10.0)).shown_as("mm", 1e3))]
     pub collision_margin: f32,
-    /// The most in m/s that cloth which finds itself inside of an obstacle, or too near to other cloth, leaves it by,
-    /// greater than 0, 1 by default. 0.5 to 3: more gets out sooner, and looks like a blow.
+    /// Largest push-out speed of cloth that is inside an obstacle, or too near to other cloth, in m/s, greater than 0, 1 by
+    /// default. 0.5 to 3: more gets out sooner, and looks like a blow.
     #[reflect(@Parameter::positive("m/s", (0.1, 5.0)).logarithmic(0.1).entered((0.001, 1000.0)).titled("Leaving speed"))]
     pub max_depenetration_velocity: f32,
-    /// How the cloth collides with itself, and with other cloths for which this isn't off either. Off by default, since it costs.
+    /// Self-collision mode: how the cloth collides with itself, and with other cloths that have one too. Off by default, since
+    /// it costs.
     pub self_collision: SelfCollision,
     /// Distance in m that parts of cloth keep from each other, greater than 0, 0.004 by default. 0.002 to 0.01: less lies
     /// closer, more is safer in a rush. Parts that are nearer to each other at rest stay so. More than four edges of the mesh
@@ -125,11 +126,12 @@ pub struct Cloth {
     /// Coulomb friction of cloth on cloth, no unit, 0 or more, 0.3 by default. 0.1 for silk, 0.4 for wool.
     #[reflect(@Parameter::not_negative("", (0.0, 1.0)).entered((0.0, 100.0)))]
     pub self_friction: f32,
-    /// Layers that the cloth is in for other cloths, one a bit. Two meet where each is in the other's mask.
+    /// Collision layers of the cloth for other cloths, one a bit, the first by default. Two cloths meet where each is in the
+    /// other's mask.
     pub collision_layers: u32,
-    /// Which obstacles and cloths the cloth meets: those whose
+    /// Collision mask: the cloth meets obstacles and cloths whose
     /// [`ClothCollider::layers`](crate::prelude::ClothCollider::layers), or `collision_layers`, have a bit in common with
-    /// it.
+    /// it. All by default.
     pub collision_mask: u32,
 }
 

@@ -64,19 +64,19 @@ pub struct Fabric {
     /// than 0. 30 to 20 000. It has to be near enough to the warp's for the shear stiffness: lower that first.
     #[reflect(@Parameter::positive("N/m", (1.0, 1e5)).logarithmic(1.0).entered((0.01, 1e8)))]
     pub weft_stiffness: f32,
-    /// By how much the warp gets stiffer as it is stretched, no unit, 0 or more: a strip that is stretched by a strain takes
+    /// Strain stiffening of the warp, no unit, 0 or more: a strip that is stretched by a strain takes
     /// `warp_stiffness * (1 + warp_stiffening * strain)` for any more. 0 for most weaves, 10 and more for knits.
     #[reflect(@Parameter::not_negative("", (0.0, 200.0)).logarithmic(0.1).entered((0.0, 1e4)))]
     pub warp_stiffening: f32,
-    /// By how much the weft gets stiffer as it is stretched, no unit, 0 or more, as `warp_stiffening`. 0 for most weaves, 10
-    /// and more for knits.
+    /// Strain stiffening of the weft, no unit, 0 or more: a strip that is stretched by a strain takes
+    /// `weft_stiffness * (1 + weft_stiffening * strain)` for any more. 0 for most weaves, 10 and more for knits.
     #[reflect(@Parameter::not_negative("", (0.0, 200.0)).logarithmic(0.1).entered((0.0, 1e4)))]
     pub weft_stiffening: f32,
-    /// Share of their stiffness that is left of threads that are pressed together, no unit, 0 to 1. Less lets them buckle
-    /// where folds would be too small for the mesh.
+    /// Stiffness under compression as a share of that under tension, no unit, 0 to 1. Less lets threads buckle where folds
+    /// would be too small for the mesh.
     #[reflect(@Parameter::within("", (0.0, 1.0), (0.0, 1.0)))]
     pub compression: f32,
-    /// Force over width and shear angle, in N/m, 0 or more: how hard it is to pull the squares of the weave askew. 20 for a
+    /// Shear stiffness: force over width and shear angle, in N/m, 0 or more: how hard it is to pull the squares of the weave askew. 20 for a
     /// loose weave, 100 for a tight one; more for leather and rubber, which have no threads. At most what fits warp and
     /// weft: the product of their stiffnesses over their difference.
     #[reflect(@Parameter::not_negative("N/m", (0.0, 1e4)).logarithmic(0.1).entered((0.0, 1e8)))]
