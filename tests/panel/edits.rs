@@ -113,6 +113,26 @@ fn the_solver_and_its_own_settings_can_be_chosen() {
 }
 
 #[test]
+fn what_cloth_keeps_from_itself_can_be_typed_once_it_meets_itself() {
+    let mut app = app();
+    let cloth = spawn_cloth(&mut app, "Curtain", ());
+    let mut desk = Desk::new(app);
+    assert!(desk.controls(Role::Slider, "Self distance").next().is_none());
+    desk.choose(Role::ComboBox, "Self-collision", "Robust");
+    for (name, text) in [("Self distance", "6 mm"), ("Self friction", "0.5"), ("Leaving speed", "2 m/s")] {
+        desk.type_value(name, text);
+    }
+    let settings = Cloth {
+        self_collision: SelfCollision::Robust,
+        self_distance: 0.006,
+        self_friction: 0.5,
+        max_depenetration_velocity: 2.0,
+        ..default()
+    };
+    assert_eq!(desk.get::<Cloth>(cloth), &settings);
+}
+
+#[test]
 fn coarse_levels_go_and_come() {
     let mut app = app();
     let own = Cloth { levels: Some(vec![LevelPass { stride: 4, iterations: 6 }]), ..default() };
