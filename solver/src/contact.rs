@@ -9,6 +9,7 @@
 pub(crate) mod body;
 pub(crate) mod broad_phase;
 pub(crate) mod feature;
+pub(crate) mod friction;
 pub(crate) mod mesh;
 pub(crate) mod particle;
 

@@ -7,7 +7,7 @@
 
 use bevy_math::Vec3A;
 
-use crate::{input::StepContext, particles::Particles, topology::Topology};
+use crate::{input::StepContext, noise::noise, particles::Particles, topology::Topology};
 
 /// How far particles may be off a plane that counts as flat, and how far off it they are put, m: less than a fibre is thick.
 const IMPERFECTION: f32 = 1e-6;
@@ -38,15 +38,6 @@ fn is_flat_along(axis: Vec3A, position: &[Vec3A]) -> bool {
     position.iter().all(|place| (place - position[0]).dot(axis).abs() < IMPERFECTION)
 }
 
-/// A number in -1..1 that looks random: the mixer at the end of MurmurHash3 (Appleby 2011).
-fn noise(i: u32) -> f32 {
-    let mut hash = i;
-    hash = (hash ^ (hash >> 16)).wrapping_mul(0x85eb_ca6b);
-    hash = (hash ^ (hash >> 13)).wrapping_mul(0xc2b2_ae35);
-    hash ^= hash >> 16;
-    (hash >> 8) as f32 / (1 << 23) as f32 - 1.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,14 +48,5 @@ mod tests {
         assert!(is_flat_along(Vec3A::Y, &flat));
         assert!(!is_flat_along(Vec3A::X, &flat));
         assert!(!is_flat_along(Vec3A::Z, &flat));
-    }
-
-    #[test]
-    fn noise_goes_both_ways_and_is_no_more_than_one() {
-        let noises: Vec<f32> = (0..1000).map(noise).collect();
-        assert!(noises.iter().all(|noise| (-1.0..1.0).contains(noise)));
-        let mean = noises.iter().sum::<f32>() / 1000.0;
-        let square = noises.iter().map(|noise| noise * noise).sum::<f32>() / 1000.0;
-        assert!(mean.abs() < 0.05 && (square - 1.0 / 3.0).abs() < 0.03, "{mean}, {square}");
     }
 }

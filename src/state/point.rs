@@ -2,7 +2,7 @@
 
 use bevy::{math::Vec3A, prelude::*};
 
-use crate::state::ClothState;
+use crate::{solver::geometry::closest_point, state::ClothState};
 
 /// A point of a cloth, by the triangle that it lies on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
@@ -31,7 +31,9 @@ impl ClothState {
         let place = Vec3A::from(position - self.origin);
         let near = |triangle: &[u32; 3]| {
             let corners = triangle.map(|i| self.particles.position[i as usize]);
-            let weights = nearest_weights(place, corners);
+            // Of triangles with next to no area, some may be below zero.
+            let weights = Vec3::from(closest_point::on_triangle(place, corners).max(Vec3A::ZERO));
+            let weights = weights / weights.element_sum();
             (blend(corners, weights).distance_squared(place), weights)
         };
         let nearest = (0..).zip(self.topology.triangles.iter().map(near));
@@ -50,51 +52,4 @@ impl ClothState {
 /// The point with these barycentric weights.
 pub(crate) fn blend([a, b, c]: [Vec3A; 3], weights: Vec3) -> Vec3A {
     a * weights.x + b * weights.y + c * weights.z
-}
-
-/// Weights of the point of a triangle that is nearest to `p`: on its face, else on one of its sides. Ericson, "Real-Time
-/// Collision Detection" (2005), section 5.1.5.
-fn nearest_weights(p: Vec3A, [a, b, c]: [Vec3A; 3]) -> Vec3 {
-    let (ab, ac, normal) = (b - a, c - a, (b - a).cross(c - a));
-    let area = normal.length_squared();
-    let on_face = Vec3::new((b - p).cross(c - p).dot(normal), (c - p).cross(a - p).dot(normal), 0.0) / area;
-    let on_face = on_face.with_z(1.0 - on_face.x - on_face.y);
-    if area > 0.0 && on_face.cmpge(Vec3::ZERO).all() {
-        return on_face;
-    }
-    let along = |from: Vec3A, side: Vec3A| {
-        ((p - from).dot(side) / side.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0)
-    };
-    let (u, v, w) = (along(a, ab), along(b, c - b), along(a, ac));
-    let sides = [Vec3::new(1.0 - u, u, 0.0), Vec3::new(0.0, 1.0 - v, v), Vec3::new(1.0 - w, 0.0, w)];
-    let distance = |weights: &Vec3| blend([a, b, c], *weights).distance_squared(p);
-    let [first, second, third] = sides;
-    [second, third].into_iter().fold(first, |best, next| if distance(&next) < distance(&best) { next } else { best })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CORNERS: [Vec3A; 3] = [Vec3A::ZERO, Vec3A::X, Vec3A::Y];
-
-    #[test]
-    fn the_nearest_point_is_on_the_face_a_side_or_a_corner() {
-        for (p, expected) in [
-            (Vec3A::new(0.25, 0.5, 3.0), Vec3::new(0.25, 0.25, 0.5)),
-            (Vec3A::new(0.25, -1.0, 2.0), Vec3::new(0.75, 0.25, 0.0)),
-            (Vec3A::new(2.0, 2.0, 0.0), Vec3::new(0.0, 0.5, 0.5)),
-            (Vec3A::new(-1.0, -1.0, 1.0), Vec3::X),
-            (Vec3A::new(3.0, -1.0, 1.0), Vec3::Y),
-        ] {
-            assert!(nearest_weights(p, CORNERS).abs_diff_eq(expected, 1e-6), "{p}");
-        }
-    }
-
-    #[test]
-    fn a_triangle_of_no_area_has_a_nearest_point() {
-        let needle = [Vec3A::ZERO, Vec3A::X, Vec3A::X * 0.5];
-        assert_eq!(blend(needle, nearest_weights(Vec3A::new(0.25, 1.0, 0.0), needle)), Vec3A::X * 0.25);
-        assert!(nearest_weights(Vec3A::ONE, [Vec3A::ZERO; 3]).is_finite());
-    }
 }

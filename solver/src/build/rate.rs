@@ -1,6 +1,6 @@
 //! How fast a sheet's bends may move its particles.
 
-use crate::Bend;
+use crate::{Bend, noise::noise};
 
 /// Rounds in which the fastest of all ways to move is looked for. It is found within some per cent.
 const ROUNDS: u32 = 32;
@@ -12,7 +12,7 @@ const MARGIN: f32 = 1.1;
 /// times rigidity over areal density, the square of the fastest frequency. By the power method.
 pub(super) fn of_bends(bends: &[Bend], areas: &[f32]) -> f32 {
     // Starts with something of every way to move in them: neighbours go apart.
-    let far: Vec<f32> = (0..areas.len() as u32).map(start).collect();
+    let far: Vec<f32> = (0..areas.len() as u32).map(noise).collect();
     // Of particles that are much lighter than others, that has so little that the rounds don't bring it out.
     let hard = far.iter().zip(areas).map(|(way, area)| way / area.sqrt()).collect();
     let (usual, of_light) = (fastest(bends, areas, far), fastest(bends, areas, hard));
@@ -58,13 +58,6 @@ pub(super) fn bound(bends: &[Bend], areas: &[f32]) -> f32 {
         }
     }
     sums.iter().zip(areas).map(|(sum, area)| sum / area).fold(0.0, f32::max)
-}
-
-/// Numbers between -1 and 1 without a pattern: the bits of the index, well mixed.
-fn start(i: u32) -> f32 {
-    let mixed = i.wrapping_add(1).wrapping_mul(0x9e37_79b9);
-    let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x85eb_ca6b);
-    (mixed ^ (mixed >> 13)) as i32 as f32 / i32::MAX as f32
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use crate::{
 };
 
 pub(crate) mod bend;
+pub(crate) mod diagonal;
 pub(crate) mod face;
 pub mod spring;
 

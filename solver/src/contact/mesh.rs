@@ -33,7 +33,7 @@ use crate::{
 
 pub(crate) mod candidates;
 pub(crate) mod ccd;
-pub(crate) mod closest_point;
+pub(crate) mod nearest_point;
 pub(crate) mod planes;
 
 /// Distance that cloth keeps from triangles at least, m. Nearer, rounding decides which side it is on.
@@ -242,7 +242,7 @@ impl DistanceQuery for MeshDistanceQuery<'_> {
     fn sample<S: Simd>(&self, simd: S, local: Vec3x8<S>) -> SignedDistance<f32x8<S>> {
         let (known, is_closed) = (self.known(), self.mesh.is_closed);
         if known.planes.is_empty() {
-            closest_point::nearest(simd, local, &known.now, known, is_closed).sample
+            nearest_point::nearest(simd, local, &known.now, known, is_closed).sample
         } else {
             planes::highest(simd, local, known, is_closed)
         }
@@ -254,7 +254,7 @@ impl DistanceQuery for MeshDistanceQuery<'_> {
             return self.sample(simd, local);
         }
         let known = self.known();
-        closest_point::nearest(simd, local, &known.then, known, self.mesh.is_closed).sample
+        nearest_point::nearest(simd, local, &known.then, known, self.mesh.is_closed).sample
     }
 
     #[inline(always)]
@@ -278,7 +278,7 @@ impl DistanceQuery for MeshDistanceQuery<'_> {
             return Vec3x8::splat(simd, [0.0; 3]);
         }
         let known = self.known();
-        closest_point::nearest(simd, local, &known.now, known, self.mesh.is_closed).way_from(
+        nearest_point::nearest(simd, local, &known.now, known, self.mesh.is_closed).way_from(
             simd,
             &known.then,
             &known.now,

@@ -1,9 +1,17 @@
 //! The closest points of the two pairs of features that meshes touch with first: a point and a triangle, two edges.
+//!
+//! That of a point and a triangle is here twice. [`on_triangle`] asks in front of which corner, side or face the point is, and
+//! stops at the first answer: the faster one for a single point, and finite where a triangle has no area. Eight points side by
+//! side would take eight ways through it; for them, `on_triangle_without_branches` works out all sides and the inside, and
+//! chooses. Both agree but for rounding, and neither may take the other's place: steps would have other bits.
 
 use bevy_math::Vec3A;
 
+use crate::layout::{number::Number, simd::Vec3Wide};
+
 /// Weights of the corners of the triangle `[a, b, c]` at its place closest to `p`. Ericson, "Real-Time Collision
-/// Detection" (2005), section 5.1.5: in front of which corner, side or face `p` is.
+/// Detection" (2005), section 5.1.5: in front of which corner, side or face `p` is. All
+/// are finite and 1 in sum, but for rounding; of a triangle with next to no area, which is all rounding, some may be below 0.
 #[inline]
 pub fn on_triangle(p: Vec3A, [a, b, c]: [Vec3A; 3]) -> Vec3A {
     let (ab, ac, ap) = (b - a, c - a, p - a);
@@ -40,6 +48,38 @@ pub fn on_triangle(p: Vec3A, [a, b, c]: [Vec3A; 3]) -> Vec3A {
     let whole = va + vb + vc;
     let (v, w) = (share(vb, whole), share(vc, whole));
     Vec3A::new(1.0 - v - w, v, w)
+}
+
+/// Weights of the corners of a triangle at its place closest to `p`: its inside where `p` is above that, else the closest of
+/// its edges. Of a triangle without area, the weights needn't be finite.
+#[inline(always)]
+pub(crate) fn on_triangle_without_branches<N: Number>(p: Vec3Wide<N>, [a, b, c]: [Vec3Wide<N>; 3]) -> Vec3Wide<N> {
+    let (zero, one) = (p.x.broadcast(0.0), p.x.broadcast(1.0));
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (bb, cc, bc) = (ab.dot(ab), ac.dot(ac), ab.dot(ac));
+    let (pb, pc) = (ab.dot(ap), ac.dot(ap));
+    // Cramer's rule for the foot of the perpendicular.
+    let whole = one / (bb * cc - bc * bc);
+    let (v, w) = ((cc * pb - bc * pc) * whole, (bb * pc - bc * pb) * whole);
+    let u = one - v - w;
+    // Along each edge, and how far from it, but for the height above the plane, which is the same for all.
+    let clamped = |share: N| share.at_least(zero).at_most(one);
+    let edge = bb - bc - bc + cc;
+    let (t_ab, t_ac) = (clamped(pb / bb), clamped(pc / cc));
+    let t_bc = clamped((pc - pb + bb - bc) / edge);
+    let from_a = |v: N, w: N| {
+        // |ap - v ab - w ac|² less |ap|².
+        v * (v * bb - (pb + pb)) + w * (w * cc - (pc + pc)) + (v * w) * (bc + bc)
+    };
+    let (far_ab, far_ac, far_bc) = (from_a(t_ab, zero), from_a(zero, t_ac), from_a(one - t_bc, t_bc));
+    let is_ac = far_ac.is_below(far_ab);
+    let far = far_ac.select(is_ac, far_ab);
+    let is_bc = far_bc.is_below(far);
+    let edge_v = (one - t_bc).select(is_bc, zero.select(is_ac, t_ab));
+    let edge_w = t_bc.select(is_bc, t_ac.select(is_ac, zero));
+    let is_inside = zero.is_below(u) & zero.is_below(v) & zero.is_below(w);
+    let (v, w) = (v.select(is_inside, edge_v), w.select(is_inside, edge_w));
+    Vec3Wide { x: one - v - w, y: v, z: w }
 }
 
 /// The place of a triangle that is closest to `p`.
@@ -100,6 +140,22 @@ mod tests {
         }
 
         #[test]
+        fn places_without_branches_are_those_with(p in point(), corners in prop::array::uniform3(point())) {
+            let [a, b, c] = corners;
+            prop_assume!((b - a).cross(c - a).length() > 0.01);
+            let at = |weights: Vec3A| a * weights.x + b * weights.y + c * weights.z;
+            let expected = at(on_triangle(p, corners));
+            let found = at(on_triangle_without_branches(p.into(), corners.map(Vec3Wide::from)).into());
+            prop_assert!((p.distance(found) - p.distance(expected)).abs() < 1e-4, "{found} for {expected}");
+        }
+
+        #[test]
+        fn a_triangle_without_area_has_finite_weights(p in point(), ends in prop::array::uniform2(point()), at in 0.0_f32..1.0) {
+            let [a, b] = ends;
+            prop_assert!(on_triangle(p, [a, b, a.lerp(b, at)]).is_finite());
+        }
+
+        #[test]
         fn no_two_places_on_edges_are_closer(first in prop::array::uniform2(point()), other in prop::array::uniform2(point())) {
             let at = |[a, b]: [Vec3A; 2], s: f32| a.lerp(b, s);
             let (s, t) = on_edges(first, other);
@@ -118,6 +174,8 @@ mod tests {
     fn what_has_no_size_has_a_closest_place_too() {
         let (p, q) = (Vec3A::ONE, Vec3A::X);
         assert!(on_triangle(p, [q; 3]).is_finite());
+        let needle = [Vec3A::ZERO, Vec3A::X, Vec3A::X * 0.5];
+        assert_eq!(place_on_triangle(Vec3A::new(0.25, 1.0, 0.0), needle), Vec3A::X * 0.25);
         let (s, t) = on_edges([p, p], [q, q]);
         assert!(s.is_finite() && t.is_finite());
         // Parallel edges beside each other.

@@ -13,8 +13,9 @@ use crate::{
         attach::tether::{self, PinPlaces},
         multigrid::{LevelSolve, Levels},
         strand::{
-            diagonal::{self, CellMaterial, Seam},
+            cells::{self, CellMaterial},
             grid::{self, GridStrandSolver, StrandDirection, StrandScratch},
+            seam::Seam,
             shear_strands::ShearScratch,
         },
     },
@@ -167,7 +168,7 @@ impl Cloth<'_> {
         }
         tether::solve(position, inverse_mass, *first, tethers, pins, slack, simd_level);
         let shear_scratch = &mut lock(&self.worker_scratches[worker]).shear_scratch;
-        diagonal::solve_band(&mut run.sheet(), band, 0, lattice, cells, shear_scratch, simd_level);
+        cells::solve_band(&mut run.sheet(), band, 0, lattice, cells, shear_scratch, simd_level);
     }
 
     /// The diagonals below odd rows, and those to the band above: they have no particle in common.
@@ -175,7 +176,7 @@ impl Cloth<'_> {
         let SharedStep { grid_solver: GridStrandSolver { lattice, simd_level, .. }, cells, .. } = *self.work;
         let band = self.bands[number];
         let WorkerScratch { seam, shear_scratch, .. } = &mut **lock(&self.worker_scratches[worker]);
-        diagonal::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, cells, shear_scratch, simd_level);
+        cells::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, cells, shear_scratch, simd_level);
         let Some(above) = number.checked_sub(1) else { return };
         for (row, band) in [above, number].into_iter().enumerate() {
             seam.take(&lock(&self.runs[band]).sheet(), self.bands[band], row);

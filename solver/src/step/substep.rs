@@ -9,7 +9,7 @@ use crate::{
         multigrid::LevelSolve,
         strand::{
             bend_factors,
-            diagonal::{self, CellMaterial},
+            cells::{self, CellMaterial},
             grid::{self, GridStrandSolver, StrandDirection},
             law::Scaled,
             material::StrandMaterial,
@@ -186,7 +186,7 @@ impl Substep<'_> {
         if let Some(lattice) = &self.topology.lattice {
             let mut run = lanes.whole();
             let mut sheet = run.sheet();
-            diagonal::solve(
+            cells::solve(
                 &mut sheet,
                 lattice,
                 CellMaterial::new(material, h, bend_factors),

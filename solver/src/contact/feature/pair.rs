@@ -13,7 +13,10 @@
 
 use bevy_math::Vec3A;
 
-use crate::{contact::body::MovedBody, geometry::closest_point};
+use crate::{
+    contact::{body::MovedBody, friction},
+    geometry::closest_point,
+};
 
 /// Points that features are made of: particles of all cloths that may touch, then those of obstacles.
 #[derive(Clone, Debug, Default)]
@@ -129,22 +132,6 @@ pub struct Impulse {
     pub angular: Vec3A,
 }
 
-/// How many times as far as features part a particle may be moved for it. One that touches right beside a pin would have to
-/// go any distance, since the pin gives no way.
-const LONGEST_LEVER: f32 = 10.0;
-
-/// What features give way by, 1/kg: the sum of their points' inverse masses, by the squares of their `weights`. No less than
-/// what moves each point by [`LONGEST_LEVER`] times as much as it moves the features.
-#[inline]
-pub fn give<const N: usize>(weights: [f32; N], masses: [f32; N]) -> f32 {
-    let (mut whole, mut most) = (0.0, 0.0_f32);
-    for (weight, w) in weights.into_iter().zip(masses) {
-        whole += weight * weight * w;
-        most = most.max(weight.abs() * w);
-    }
-    whole.max(most / LONGEST_LEVER)
-}
-
 /// How two features part.
 #[derive(Clone, Copy, Debug)]
 pub struct FeatureCorrection {
@@ -170,24 +157,20 @@ impl FeatureCorrection {
         let places = all.map(|i| points.position[i]);
         let before = all.map(|i| points.previous[i]);
         let masses = all.map(|i| points.inverse_mass[i]);
-        let give = give(weights, masses);
+        let of_points = friction::effective_inverse_mass(weights, masses);
         let beside = body.map(|on| on.beside(weights, places));
-        let meets = |direction: Vec3A| match (body, beside) {
-            (Some(on), Some(beside)) => give + on.body.inverse_mass_at(beside, direction),
-            _ => give,
+        let effective_inverse_mass = |direction: Vec3A| match (body, beside) {
+            (Some(on), Some(beside)) => of_points + on.body.inverse_mass_at(beside, direction),
+            _ => of_points,
         };
-        let give_along = meets(normal);
-        if give_along <= 0.0 {
+        let along_normal = effective_inverse_mass(normal);
+        if along_normal <= 0.0 {
             return None;
         }
-        let part = normal * (depenetration / give_along);
-        let push = penetration / give_along;
-        let slide = weighted(weights, places) - weighted(weights, before);
-        let (along, length) = (slide - normal * slide.dot(normal)).normalize_and_length();
-        let mut change = normal * push;
-        if length > 0.0 {
-            change -= along * (length / meets(along)).min(friction * push);
-        }
+        let part = normal * (depenetration / along_normal);
+        let displacement = weighted(weights, places) - weighted(weights, before);
+        let lambda = penetration / along_normal;
+        let change = friction::impulse([normal, displacement], lambda, friction, effective_inverse_mass);
         for ((&i, weight), w) in all.iter().zip(weights).zip(masses) {
             points.position[i] += (change + part) * (weight * w);
             points.previous[i] += part * (weight * w);

@@ -3,7 +3,7 @@
 use bevy_math::Vec3A;
 
 use crate::{
-    contact::feature::pair::{FeaturePoints, give},
+    contact::{feature::pair::FeaturePoints, friction::effective_inverse_mass},
     geometry::{closest_point, intersection::pierces},
 };
 
@@ -66,13 +66,13 @@ impl Tangle {
     pub fn solve(&self, points: &mut FeaturePoints, far: f32) {
         let all = self.points.map(|i| i as usize);
         let masses = all.map(|i| points.inverse_mass[i]);
-        let give = give(self.weights, masses);
-        if give <= 0.0 {
+        let inverse_mass = effective_inverse_mass(self.weights, masses);
+        if inverse_mass <= 0.0 {
             return;
         }
         for (k, (&i, w)) in all.iter().zip(masses).enumerate() {
             let towards = if k < 2 { far } else { -far };
-            points.position[i] += self.way * (towards * self.weights[k] * w / give);
+            points.position[i] += self.way * (towards * self.weights[k] * w / inverse_mass);
         }
     }
 }

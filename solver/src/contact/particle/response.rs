@@ -6,6 +6,7 @@ use fearless_simd::{f32x8, prelude::*};
 use crate::{
     contact::{
         body::Bodies,
+        friction,
         particle::{Contacts8, ccd::Correction},
     },
     layout::simd::{Lane, Vec3x8},
@@ -48,6 +49,8 @@ impl Response for Kinematic {
         _: usize,
     ) -> (Vec3x8<S>, Vec3x8<S>) {
         let Contacts8 { place, before, touches, normal, penetration, parted, clamped, slide, .. } = *touching;
+        // Where only the particle moves, all directions have its inverse mass, which cancels out: what is held is a length, and
+        // particles that stick all need neither a root nor a division.
         let (squared, hold) = (slide.dot(slide), penetration * friction);
         let slides = squared.simd_gt(hold * hold);
         let mut held = slide;
@@ -88,12 +91,13 @@ impl Response for Dynamic {
             Vec3x8::splat(simd, inertia.z_axis.to_array()),
         ];
         let own = inverse_mass + count * body.inverse_mass;
-        let lambda = penetration / (own + swing(beside, normal, &axes) * count);
+        let along_normal = own + turning_inverse_mass(beside, normal, &axes) * count;
+        let lambda = penetration / along_normal;
         let length = slide.dot(slide).sqrt();
         let slides = touches & length.simd_gt(SHORTEST);
         let along = slide * (f32x8::splat(simd, 1.0) / length);
-        let drag = (length / (own + swing(beside, along, &axes) * count)).min(lambda * friction);
-        let drag = slides.select(drag, zero);
+        let along_slide = own + turning_inverse_mass(beside, along, &axes) * count;
+        let drag = slides.select(friction::drag(length / along_slide, lambda, friction), zero);
         let nothing = Vec3x8::splat(simd, [0.0; 3]);
         let push = (normal * lambda - along.or(slides, nothing) * drag).or(touches, nothing);
         let lever = beside.cross(push);
@@ -107,9 +111,10 @@ impl Response for Dynamic {
     }
 }
 
-/// What a body's turning adds to its inverse mass at places beside its centre, along unit vectors: (r x n) · I⁻¹ (r x n).
+/// What a body's turning adds to its inverse mass at places beside its centre, along unit vectors: (r x n) · I⁻¹ (r x n), as
+/// in [`MovedBody::inverse_mass_at`](crate::contact::body::MovedBody::inverse_mass_at), but for the order of the sums.
 #[inline(always)]
-fn swing<S: Simd>(beside: Vec3x8<S>, direction: Vec3x8<S>, axes: &[Vec3x8<S>; 3]) -> f32x8<S> {
+fn turning_inverse_mass<S: Simd>(beside: Vec3x8<S>, direction: Vec3x8<S>, axes: &[Vec3x8<S>; 3]) -> f32x8<S> {
     let lever = beside.cross(direction);
     let [x, y, z] = *axes;
     lever.dot(x * lever.x + y * lever.y + z * lever.z)
@@ -136,17 +141,14 @@ pub(crate) fn one(
     obstacle: usize,
 ) {
     let Correction { normal, penetration, parted, clamped, surface_way } = *correction;
-    let way = *position - *previous - surface_way;
-    let slide = way - normal * way.dot(normal);
+    let displacement = *position - *previous - surface_way;
     let beside = |centre: Vec3A| *position + normal * penetration - centre;
-    let meets = |direction: Vec3A| {
+    let effective_inverse_mass = |direction: Vec3A| {
         let of_body = bodies.get(obstacle).map_or(0.0, |body| body.inverse_mass_at(beside(body.centre), direction));
         inverse_mass + of_body
     };
-    let lambda = penetration / meets(normal);
-    let (along, length) = slide.normalize_and_length();
-    let drag = (length / meets(along)).min(lambda * friction);
-    let push = normal * lambda - along * drag;
+    let lambda = penetration / effective_inverse_mass(normal);
+    let push = friction::impulse([normal, displacement], lambda, friction, effective_inverse_mass);
     if let Some(centre) = bodies.get(obstacle).map(|body| body.centre) {
         bodies.push(obstacle, -push, -beside(centre).cross(push));
     }

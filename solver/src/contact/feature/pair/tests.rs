@@ -111,9 +111,9 @@ proptest! {
         let gap = between.length();
         prop_assume!(gap > 1e-2);
         // What gives way right beside what doesn't is held back.
-        let give: f32 = weights.iter().zip(inverse_mass).map(|(weight, w)| weight * weight * w).sum();
+        let effective: f32 = weights.iter().zip(inverse_mass).map(|(weight, w)| weight * weight * w).sum();
         let most = weights.iter().zip(inverse_mass).map(|(weight, w)| weight.abs() * w).fold(0.0, f32::max);
-        prop_assume!(give > 1e-4 && most < 0.9 * LONGEST_LEVER * give);
+        prop_assume!(effective > 1e-4 && most < 0.9 * friction::MOST_LEVERAGE * effective);
         let distance = gap / nearer;
         // Before, they were as near; or as far as they should be.
         let (old_gap, most_parted) = match depenetration {

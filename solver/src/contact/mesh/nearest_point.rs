@@ -4,10 +4,10 @@ use fearless_simd::{f32x8, prelude::*};
 
 use crate::{
     contact::mesh::BlockCache,
+    geometry::closest_point,
     layout::{
-        number::Number,
         points::Block,
-        simd::{Vec3Wide, Vec3x8, lane},
+        simd::{Vec3x8, lane},
     },
     shape::solid::field::SignedDistance,
 };
@@ -44,7 +44,7 @@ pub(crate) fn nearest<S: Simd>(
     let mut number = zero;
     for (k, [a, b, c]) in faces.iter().enumerate() {
         let (a, b, c) = (Vec3x8::load(simd, a), Vec3x8::load(simd, b), Vec3x8::load(simd, c));
-        let at = on_triangle(place, [a, b, c]);
+        let at = closest_point::on_triangle_without_branches(place, [a, b, c]);
         let way = place - (a * at.x + b * at.y + c * at.z);
         let normal = (b - a).cross(c - a);
         let length = way.dot(way);
@@ -84,63 +84,5 @@ impl<S: Simd> NearestPoint<S> {
             way = face.or(self.number.simd_eq(k as f32), way);
         }
         way
-    }
-}
-
-/// Weights of the corners of a triangle at its place closest to `p`: its inside where `p` is above that, else the closest of
-/// its edges. Without branches, see [`on_triangle`](crate::geometry::closest_point::on_triangle).
-#[inline(always)]
-fn on_triangle<N: Number>(p: Vec3Wide<N>, [a, b, c]: [Vec3Wide<N>; 3]) -> Vec3Wide<N> {
-    let (zero, one) = (p.x.broadcast(0.0), p.x.broadcast(1.0));
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (bb, cc, bc) = (ab.dot(ab), ac.dot(ac), ab.dot(ac));
-    let (pb, pc) = (ab.dot(ap), ac.dot(ap));
-    // Cramer's rule for the foot of the perpendicular.
-    let whole = one / (bb * cc - bc * bc);
-    let (v, w) = ((cc * pb - bc * pc) * whole, (bb * pc - bc * pb) * whole);
-    let u = one - v - w;
-    // Along each edge, and how far from it, but for the height above the plane, which is the same for all.
-    let clamped = |share: N| share.at_least(zero).at_most(one);
-    let edge = bb - bc - bc + cc;
-    let (t_ab, t_ac) = (clamped(pb / bb), clamped(pc / cc));
-    let t_bc = clamped((pc - pb + bb - bc) / edge);
-    let from_a = |v: N, w: N| {
-        // |ap - v ab - w ac|² less |ap|².
-        v * (v * bb - (pb + pb)) + w * (w * cc - (pc + pc)) + (v * w) * (bc + bc)
-    };
-    let (far_ab, far_ac, far_bc) = (from_a(t_ab, zero), from_a(zero, t_ac), from_a(one - t_bc, t_bc));
-    let is_ac = far_ac.is_below(far_ab);
-    let far = far_ac.select(is_ac, far_ab);
-    let is_bc = far_bc.is_below(far);
-    let edge_v = (one - t_bc).select(is_bc, zero.select(is_ac, t_ab));
-    let edge_w = t_bc.select(is_bc, t_ac.select(is_ac, zero));
-    let is_inside = zero.is_below(u) & zero.is_below(v) & zero.is_below(w);
-    let (v, w) = (v.select(is_inside, edge_v), w.select(is_inside, edge_w));
-    Vec3Wide { x: one - v - w, y: v, z: w }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::closest_point;
-    use bevy_math::Vec3A;
-    use proptest::prelude::*;
-
-    fn point() -> impl Strategy<Value = Vec3A> {
-        prop::array::uniform3(-1.0_f32..1.0).prop_map(Vec3A::from)
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
-
-        #[test]
-        fn places_without_branches_are_those_with(p in point(), corners in prop::array::uniform3(point())) {
-            let [a, b, c] = corners;
-            prop_assume!((b - a).cross(c - a).length() > 0.01);
-            let at = |weights: Vec3A| a * weights.x + b * weights.y + c * weights.z;
-            let expected = at(closest_point::on_triangle(p, corners));
-            let found = at(on_triangle(p.into(), corners.map(Vec3Wide::from)).into());
-            prop_assert!((p.distance(found) - p.distance(expected)).abs() < 1e-4, "{found} for {expected}");
-        }
     }
 }
