@@ -87,7 +87,7 @@ pub struct Cloth {
     /// that isn't enough, stiffness and damping are cut down to what is stable, and one warning says so.
     #[reflect(@Parameter::within("", (1.0, 10_000.0), (1.0, 2000.0)).whole())]
     pub max_substeps: u32,
-    /// Factor on [`ClothGravity`] for this cloth, no unit, 1 by default. 0 floats, negative rises.
+    /// Factor on [`ClothGravity`](crate::prelude::ClothGravity) for this cloth, no unit, 1 by default. 0 floats, negative rises.
     #[reflect(@Parameter::finite("", (-1.0, 3.0)).entered((-1e3, 1e3)))]
     pub gravity_scale: f32,
     /// Share of its length by which a tether may be longer, no unit, 0 or more, 0.005 by default, `None` for no tethers. 0.002 to 0.01

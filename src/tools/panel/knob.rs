@@ -266,8 +266,8 @@ mod tests {
     fn documentation_says_what_the_table_says() {
         let defaults = [parameters::<Cloth>(), parameters::<ClothSprings>(), parameters::<Wind>()];
         for (field, .., docs, default) in defaults.iter().flatten() {
-            let default = default.map_or_else(String::new, |default| default.to_string());
-            assert!(docs.contains(&format!("{default} by default")), "{field}: {default} in {docs:?}");
+            let default = default.map_or_else(String::new, |default| format!(" {default}"));
+            assert!(docs.contains(&format!("{default} by default")), "{field}:{default} in {docs:?}");
         }
         for (field, parameter, docs, _) in defaults.iter().flatten().chain(&parameters::<Fabric>()) {
             let says = |text: &str| assert!(docs.contains(text), "{field}: {text} in {docs:?}");
