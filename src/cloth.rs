@@ -23,7 +23,7 @@ pub(crate) use in_force::InForce;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothSolver {
-    /// Each thread of a regular mesh solved exactly, and coarse levels for the long waves: the least stretch for the time
+    /// Each strand of a regular mesh solved exactly, and coarse levels for the long waves: the least stretch for the time
     /// that it takes, stable at any stiffness and time step. For games.
     #[default]
     Strands,

@@ -10,7 +10,7 @@ use crate::solver::Solid;
 
 /// How a solid differs from what is seen of it. The message names the cause and the mend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-enum Unlike {
+enum Difference {
     /// What is round about its axis is scaled one way across that more than the other.
     #[error(
         "it is round about Y, its scale isn't the same along X and Z, and the larger of the two counts; give both the same \
@@ -31,7 +31,7 @@ enum Unlike {
     Sheared,
 }
 
-impl Unlike {
+impl Difference {
     /// How `solid` differs, if it does by more than rounding.
     fn of(solid: &Solid, pose: &Affine3A) -> Option<Self> {
         const ROUNDING: f32 = 1e-3;
@@ -55,7 +55,7 @@ impl Unlike {
 /// comes past one that is uniform again and again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Likeness {
-    unlike: Option<Unlike>,
+    difference: Option<Difference>,
     is_told: bool,
 }
 
@@ -63,15 +63,15 @@ impl Likeness {
     /// Looks at a solid and the transform that it has in the world.
     pub fn look(&mut self, solid: &Solid, pose: &Affine3A) {
         if !self.is_told {
-            self.unlike = Unlike::of(solid, pose);
+            self.difference = Difference::of(solid, pose);
         }
     }
 
     /// Says what is found, if it hasn't been said.
     pub fn tell(&mut self, entity: Entity) {
-        if let Some(unlike) = self.unlike.take() {
+        if let Some(difference) = self.difference.take() {
             self.is_told = true;
-            warn!("collider {entity} isn't quite what is seen: {unlike}");
+            warn!("collider {entity} isn't quite what is seen: {difference}");
         }
     }
 }
@@ -95,8 +95,9 @@ mod tests {
             Solid::TaperedCapsule(TaperedCapsule::new(0.1, 0.2, 0.3)),
         ];
         let turned = Quat::from_euler(EulerRot::XYZ, 0.4, -0.9, 1.3);
-        let [no, across, ends, sheared] = [None, Some(Unlike::Across), Some(Unlike::Ends), Some(Unlike::Sheared)];
-        let expected = |pose: Affine3A| solids.map(|solid| Unlike::of(&solid, &pose));
+        let [no, across, ends, sheared] =
+            [None, Some(Difference::Across), Some(Difference::Ends), Some(Difference::Sheared)];
+        let expected = |pose: Affine3A| solids.map(|solid| Difference::of(&solid, &pose));
         for (scale, found) in [
             (Vec3::ONE, [no; 7]),
             (Vec3::new(-2.0, 2.0, 2.0), [no; 7]),
