@@ -63,9 +63,9 @@ impl From<ClothSolver> for Method {
 pub struct Cloth {
     /// Time integrator and constraint solver, [`ClothSolver::Strands`] by default.
     pub solver: ClothSolver,
-    /// Target for the largest strain of springs along warp and weft, if their stiffness can hold it, no unit, greater than 0, 0.01 by default.
-    /// 0.001 to 0.1. Substeps follow from it where they aren't set by hand. The smaller, the more it costs, and the livelier
-    /// the cloth.
+    /// Target for the largest strain of springs along warp and weft, if their stiffness can hold it, no unit, greater than 0,
+    /// 0.01 by default. 0.001 to 0.1. Substeps follow from it where they aren't set by hand. The smaller, the more it costs,
+    /// and the livelier the cloth.
     ///
     /// [`ClothSolver::Strands`] chooses [`substeps`](Self::substeps) and [`levels`](Self::levels) by it.
     #[reflect(@Parameter::positive("", (0.001, 0.1)).logarithmic(0.001).entered((0.0001, 1.0)))]

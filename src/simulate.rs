@@ -115,10 +115,10 @@ fn step_group(
 /// Keeps what bodies have been given.
 fn take_pushes(input: &mut StepInput, scratch: &Scratch) {
     let StepInput { obstacles, owners, attachment_owners, pushes, .. } = input;
-    let by_contact = scratch.pushes().iter().zip(scratch.strays()).map(|(push, stray)| (*push, *stray));
+    let by_contact = scratch.obstacle_impulses().iter().copied().zip(scratch.obstacle_displacements().iter().copied());
     let bodies = obstacles.iter().zip(&*owners).zip(by_contact).filter(|((obstacle, _), _)| obstacle.body.is_some());
     let bodies = bodies.map(|((_, owner), pushed)| (*owner, pushed));
-    let by_pins = attachment_owners.iter().copied().zip(scratch.pulls().iter().copied());
+    let by_pins = attachment_owners.iter().copied().zip(scratch.attachment_impulses().iter().copied());
     let push = |(to, (impulse, displacement))| BodyPush { to, impulse, displacement };
     pushes.extend(bodies.chain(by_pins).map(push));
 }

@@ -25,8 +25,8 @@ mod shares;
 mod source;
 mod springs;
 mod strand_packs;
+mod strands;
 pub mod stretch;
-mod threads;
 mod topology;
 pub mod weld;
 

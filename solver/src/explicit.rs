@@ -79,12 +79,12 @@ fn most_stretched(lanes: &Lanes, topology: &Topology, material: &Material) -> f3
     }
     let place = |particle: u32| lanes.position.get(lanes.order.slot(particle));
     let strain = |spring: &Spring| place(spring.a).distance(place(spring.b)) / spring.rest - 1.0;
-    let of_threads = topology.springs_of(SpringKind::Structural).map(strain).fold(0.0, f32::max);
+    let of_strands = topology.springs_of(SpringKind::Structural).map(strain).fold(0.0, f32::max);
     let of_faces = topology.faces.iter().map(|face| FaceStrain::new(face, face.particles.map(place)).longest() - 1.0);
-    of_faces.fold(of_threads, f32::max)
+    of_faces.fold(of_strands, f32::max)
 }
 
-/// Adds up stiffness and damping of the springs at each particle, where threads are `stretched` by so much.
+/// Adds up stiffness and damping of the springs at each particle, where strands are `stretched` by so much.
 fn sum_spring_constants(topology: &Topology, material: &Material, stretched: f32, sums: &mut Vec<(f32, f32)>) {
     sums.clear();
     sums.resize(topology.particle_count(), (0.0, 0.0));

@@ -90,7 +90,7 @@ impl<'a> StepContext<'a> {
     /// Share of its length by which a tether may be longer in all, no unit: fabric may be stretched by its weight.
     pub fn slack(&self) -> f32 {
         let longest = self.tethers.map_or(0.0, Tethers::longest);
-        self.settings.tether_slack + longest * self.material.give(self.gravity.length())
+        self.settings.tether_slack + longest * self.material.stretch_under_weight(self.gravity.length())
     }
 
     /// Distance that particles keep from obstacles, m.

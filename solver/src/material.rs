@@ -185,7 +185,7 @@ impl Material {
     /// A strip that hangs by its edge is stretched by ρ g L / k at the top. Hung by two corners, cloth of 1 m was measured to
     /// be stretched three to six times as much along its geodesics to them, farther than 10 cm away (jersey; stiffer cloth
     /// more yet, where that is far too little to be seen).
-    pub fn give(&self, gravity: f32) -> f32 {
+    pub fn stretch_under_weight(&self, gravity: f32) -> f32 {
         const BY_FEW_POINTS: f32 = 6.0;
         self.moduli().map_or(0.0, |moduli| {
             let softest = moduli.pulled().into_iter().fold(f32::INFINITY, f32::min);
@@ -201,8 +201,8 @@ impl Material {
         }
     }
 
-    /// The stiffest that a thread is, N/m: on a square grid, that of a spring.
-    pub fn thread_stiffness(&self) -> SpringConstants {
+    /// The stiffest that a strand is, N/m: on a square grid, that of a spring.
+    pub fn strand_stiffness(&self) -> SpringConstants {
         match &self.elasticity {
             Elasticity::Springs([structural, ..]) => *structural,
             Elasticity::Moduli(moduli) => {

@@ -16,7 +16,7 @@ use crate::{
     topology::{SpringKind, Topology},
 };
 
-/// Stretch along the threads: change of length over rest length of the structural springs, no unit. Negative where
+/// Stretch along the strands: change of length over rest length of the structural springs, no unit. Negative where
 /// they are pressed together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Strain {
@@ -164,7 +164,7 @@ mod tests {
         };
         let topology = Topology {
             springs: vec![Spring { a: 0, b: 1, rest: 2.0, ..Spring::default() }],
-            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1, woven: false, carries: false }],
+            batches: vec![SpringBatch { kind: SpringKind::Structural, range: 0..1, on_strand: false, carries: false }],
             areas: vec![1.0; 2],
             ..Default::default()
         };

@@ -36,7 +36,7 @@ pub struct Scratch {
     pub(crate) spring_sums: Vec<(f32, f32)>,
     /// The particles one by one.
     pub(crate) gathered: GatheredParticles,
-    /// Their ways while they bend.
+    /// Their displacements while they bend.
     pub(crate) ways: ChebyshevBuffers,
     /// How they bend in this step.
     pub(crate) bending: Option<BendSolver>,
@@ -65,19 +65,19 @@ pub struct Scratch {
 impl Scratch {
     /// What the cloth has given to each of the [`obstacles`](crate::input::StepContext::obstacles) in the latest step: nothing to
     /// those that are no bodies.
-    pub fn pushes(&self) -> &[BodyImpulse] {
-        &self.bodies.pushes
+    pub fn obstacle_impulses(&self) -> &[BodyImpulse] {
+        &self.bodies.impulses
     }
 
     /// How far each of them has come off its path by that until the step's end. Who moves the bodies by it as well has them
     /// where the cloth has seen them last.
-    pub fn strays(&self) -> &[BodyDisplacement] {
-        &self.bodies.strays
+    pub fn obstacle_displacements(&self) -> &[BodyDisplacement] {
+        &self.bodies.displacements
     }
 
-    /// What the cloth has given to each of the [`body_attachments`](crate::input::StepContext::body_attachments) in the latest step, and how far that
-    /// has come off its path by it.
-    pub fn pulls(&self) -> &[(BodyImpulse, BodyDisplacement)] {
-        &self.body_attachments.pulls
+    /// What the cloth has given to each of the [`body_attachments`](crate::input::StepContext::body_attachments) in the latest
+    /// step, and how far that has come off its path by it.
+    pub fn attachment_impulses(&self) -> &[(BodyImpulse, BodyDisplacement)] {
+        &self.body_attachments.impulses
     }
 }

@@ -437,8 +437,8 @@ fn load(
 
 /// The threads that share the work, where it pays: all springs are on the lattice, and neither hands nor bodies hold it.
 fn helpers<'a>(topology: &'a Topology, ctx: &StepContext<'a>) -> Option<(&'a TaskPool, &'a Lattice)> {
-    let is_woven = ctx.settings.method == Method::Strands && topology.batches.iter().all(|batch| batch.woven);
+    let is_on_strands = ctx.settings.method == Method::Strands && topology.batches.iter().all(|batch| batch.on_strand);
     let is_large = topology.particle_count() >= grid_substep::LARGE;
     let is_free = ctx.grabs.is_empty() && ctx.attached_pins.is_empty();
-    ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_woven && is_free)
+    ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_on_strands && is_free)
 }

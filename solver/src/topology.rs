@@ -104,7 +104,7 @@ pub struct Face {
 /// Its energy is B/2 times the squared length of that sum less its rest. It is one of three:
 ///
 /// ```text
-///   three of a thread      corners of a cell           hinge of two triangles
+///   three of a strand      corners of a cell           hinge of two triangles
 ///        0---2---1              0---3                        3
 ///            |                  |   |                       / \\
 ///            3                  2---1                      0---1
@@ -128,7 +128,7 @@ pub struct BendBatch {
     /// Their place in [`Topology::bends`].
     pub range: Range<usize>,
     /// Whether [`Topology::lattice`] has them too: [`Method::Strands`](crate::input::Method::Strands) solves them there.
-    pub woven: bool,
+    pub on_strand: bool,
 }
 
 /// A run of springs of one kind and one colour: no two of them share a particle.
@@ -140,7 +140,7 @@ pub struct SpringBatch {
     pub range: Range<usize>,
     /// Whether [`Topology::lattice`] or [`Topology::strand_packs`] have them too: [`Method::Strands`](crate::input::Method::Strands)
     /// solves them there.
-    pub woven: bool,
+    pub on_strand: bool,
     /// Whether any of them carries a part of a sheet's moduli.
     pub carries: bool,
 }
@@ -176,7 +176,7 @@ pub struct Topology {
     pub cells: Vec<[u32; 4]>,
     /// The rows and columns that all particles are in, where they are in rows and columns.
     pub lattice: Option<Lattice>,
-    /// The threads of a regular mesh without a lattice, in the order in which the solver visits them.
+    /// The strands of a regular mesh without a lattice, in the order in which the solver visits them.
     pub strand_packs: Vec<StrandPack>,
     /// Coarse lattices, the coarsest first.
     pub levels: Vec<Level>,

@@ -36,7 +36,7 @@ pub(crate) fn attach_pins(
             }),
         };
         latest = Some((pin.target, attachment));
-        input.attached_pins.extend(attachment.map(|mount| AttachedPin { anchor: number, mount }));
+        input.attached_pins.extend(attachment.map(|attachment| AttachedPin { pin_motion: number, attachment }));
     }
 }
 
@@ -46,15 +46,15 @@ fn attachment_to(bodies: &mut Bodies, entity: Entity, body_pose: &BodyPose, orig
     let (body, dynamic) = motion.body.zip(body_pose.dynamic)?;
     let attachment = BodyAttachment {
         body: Body { centre: body.centre - origin, ..body },
-        way: motion.end * dynamic.centre - motion.start * dynamic.centre,
+        displacement: motion.end * dynamic.centre - motion.start * dynamic.centre,
     };
-    (attachment.body.centre.is_finite() && attachment.way.is_finite()).then_some(attachment)
+    (attachment.body.centre.is_finite() && attachment.displacement.is_finite()).then_some(attachment)
 }
 
 /// Ties tethers to pins on bodies no more, and again to those that are on none by now: a tether doesn't pull at its pin.
 pub(crate) fn untie_attached(mut cloths: Query<(&StepInput, &mut ClothAttachments, &ClothStatus)>) {
     for (input, mut attachments, status) in &mut cloths {
-        let on_bodies = || input.attached_pins.iter().map(|it| input.pin_motions[it.anchor as usize].particle);
+        let on_bodies = || input.attached_pins.iter().map(|it| input.pin_motions[it.pin_motion as usize].particle);
         if *status != ClothStatus::Ready || on_bodies().eq(attachments.on_bodies.iter().copied()) {
             continue;
         }

@@ -9,13 +9,13 @@ pub(super) fn of_plate(plate: &Plate, count: usize) -> (Vec<Bend>, Vec<BendBatch
     batches(count, &all)
 }
 
-/// The bends in batches of one colour that are either woven or not.
+/// The bends in batches of one colour that are either on strands or not.
 pub(super) fn batches(count: usize, all: &[(Bend, bool)]) -> (Vec<Bend>, Vec<BendBatch>) {
     let (mut bends, mut batches) = (Vec::with_capacity(all.len()), Vec::new());
-    for woven in [false, true] {
-        let those = all.iter().filter(|(_, other)| *other == woven).map(|(bend, _)| *bend).collect();
+    for on_strand in [false, true] {
+        let those = all.iter().filter(|(_, other)| *other == on_strand).map(|(bend, _)| *bend).collect();
         let runs = coloring::sort(count, those, |bend: &Bend| bend.particles, &mut bends);
-        batches.extend(runs.into_iter().map(|range| BendBatch { range, woven }));
+        batches.extend(runs.into_iter().map(|range| BendBatch { range, on_strand }));
     }
     (bends, batches)
 }

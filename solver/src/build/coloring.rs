@@ -10,16 +10,20 @@ use crate::{Spring, SpringBatch, SpringKind};
 /// Order in which the solver visits the kinds. What comes last is held best: stretch shows more than bending.
 const ORDER: [SpringKind; 3] = [SpringKind::Bend, SpringKind::Shear, SpringKind::Structural];
 
-/// The springs in batches of one kind, one colour, and either on threads or not, for `count` particles.
-pub(crate) fn batches(count: usize, all: &[(SpringKind, Spring)], woven: &[bool]) -> (Vec<Spring>, Vec<SpringBatch>) {
+/// The springs in batches of one kind, one colour, and either on strands or not, for `count` particles.
+pub(crate) fn batches(
+    count: usize,
+    all: &[(SpringKind, Spring)],
+    on_strands: &[bool],
+) -> (Vec<Spring>, Vec<SpringBatch>) {
     let mut springs = Vec::with_capacity(all.len());
     let mut batches = Vec::new();
-    for (kind, on_thread) in ORDER.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
-        let of_batch = all.iter().zip(woven).filter(|&(spring, &woven)| spring.0 == kind && woven == on_thread);
+    for (kind, on_strand) in ORDER.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
+        let of_batch = all.iter().zip(on_strands).filter(|&(spring, &other)| spring.0 == kind && other == on_strand);
         let of_batch: Vec<Spring> = of_batch.map(|(&(_, spring), _)| spring).collect();
         for range in sort(count, of_batch, |spring| [spring.a, spring.b], &mut springs) {
             let carries = springs[range.clone()].iter().any(|spring| spring.share != [0.0; 3]);
-            batches.push(SpringBatch { kind, range, woven: on_thread, carries });
+            batches.push(SpringBatch { kind, range, on_strand, carries });
         }
     }
     (springs, batches)

@@ -40,7 +40,7 @@ struct Hinge {
     warp: Vec2,
 }
 
-/// A bend for each edge between two triangles, none of them woven. `areas` are those of the particles and `triangle_areas`
+/// A bend for each edge between two triangles, none of them on a strand. `areas` are those of the particles and `triangle_areas`
 /// those of the triangles, m², and `warp` is the direction of the warp in each triangle.
 pub(super) fn find(
     rest: &[Vec3],

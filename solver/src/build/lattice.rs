@@ -185,7 +185,11 @@ const NONE: u32 = u32::MAX;
 
 /// The lattice of the particles of a rectangle, numbered row by row, which bend as a `plate`, and whether each of `springs`
 /// is on it.
-pub(super) fn weave(rectangle: &Rectangle, plate: &Plate, springs: &[(SpringKind, Spring)]) -> (Lattice, Vec<bool>) {
+pub(super) fn of_rectangle(
+    rectangle: &Rectangle,
+    plate: &Plate,
+    springs: &[(SpringKind, Spring)],
+) -> (Lattice, Vec<bool>) {
     let Rectangle { columns, closed, particles } = rectangle;
     let (columns, closed) = (*columns, *closed);
     let place = |particle: u32| (particle as usize / columns, particle as usize % columns);
@@ -206,7 +210,7 @@ pub(super) fn weave(rectangle: &Rectangle, plate: &Plate, springs: &[(SpringKind
             is_new
         })
     };
-    let woven = (0..).zip(springs).map(&mut put).collect();
+    let on_lattice = (0..).zip(springs).map(&mut put).collect();
     let spring = |(row, column): (usize, usize), way| {
         let known = WAYS.iter().position(|&(_, known)| known == way)?;
         springs.get(numbers[row * columns + column][known] as usize).map(|(_, spring)| *spring)
@@ -226,7 +230,7 @@ pub(super) fn weave(rectangle: &Rectangle, plate: &Plate, springs: &[(SpringKind
         Link { rest, shares, weights }
     };
     let curl = plate.curl().map(Box::new);
-    (Lattice { curl, ..Lattice::new(rows, columns, closed, grain, link) }, woven)
+    (Lattice { curl, ..Lattice::new(rows, columns, closed, grain, link) }, on_lattice)
 }
 
 /// The direction that columns are along, rather than the other.

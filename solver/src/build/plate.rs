@@ -20,7 +20,7 @@ use crate::{
 /// A bend at rest of less than this angle is a flat place and rounding, rad.
 pub(super) const FLAT: f32 = 1e-3;
 
-/// Where two weights stand in a [`Bend`] along a thread: of the particle before and of that after.
+/// Where two weights stand in a [`Bend`] along a strand: of the particle before and of that after.
 pub(super) const ENDS: [usize; 2] = [0, 1];
 
 /// The bends of particles in rows and columns, numbered row by row.
@@ -87,7 +87,7 @@ impl Plate {
             let at = |(row, column): (usize, usize)| {
                 let is_inside = row < self.rows && column < self.columns;
                 let rest = is_inside.then(|| find((row, column))).flatten().map_or([0.0; 3], |bend| bend.rest);
-                // The lattice looks for a thread's side always after it, where a bend at the border looks before.
+                // The lattice looks for a strand's side always after it, where a bend at the border looks before.
                 let [x, y, z] = rest;
                 if is_turned((row, column)) { [x, -y, -z] } else { rest }
             };
@@ -137,16 +137,16 @@ impl Surface<'_> {
         weight.is_finite().then(|| self.bend(particles, [weight, weight, -weight, -weight]))
     }
 
-    fn along(&self, thread: [(usize, usize); 3], side: (usize, usize)) -> Option<Bend> {
-        let [before, here, after] = thread.map(|at| self.place(at));
+    fn along(&self, strand: [(usize, usize); 3], side: (usize, usize)) -> Option<Bend> {
+        let [before, here, after] = strand.map(|at| self.place(at));
         let (a, b) = (before.distance(here), here.distance(after));
-        let area = self.area_around(thread[1]).sqrt();
+        let area = self.area_around(strand[1]).sqrt();
         let [p, q] = [a, b].map(|side| 2.0 * area / ((a + b) * side));
-        let particles = [thread[0], thread[2], thread[1], side];
+        let particles = [strand[0], strand[2], strand[1], side];
         (p.is_finite() && q.is_finite()).then(|| self.bend(particles, [p, q, -(p + q), 0.0]))
     }
 
-    /// A bend with what it is at rest. Where it is only bent within the cloth, as threads of uneven cells are, stretch sees
+    /// A bend with what it is at rest. Where it is only bent within the cloth, as strands of uneven cells are, stretch sees
     /// to that.
     fn bend(&self, particles: [(usize, usize); 4], weights: [f32; 4]) -> Bend {
         let places = particles.map(|at| self.place(at));

@@ -18,7 +18,7 @@ use super::cells::Cells;
 use crate::{Spring, SpringKind};
 
 /// Gives the springs along and across each cell their share of it. `springs` are sorted by kind and lower end; `warp` is
-/// the direction of the warp in each triangle. What has no area, as `slivers`, is held by threads of the mean stiffness.
+/// the direction of the warp in each triangle. What has no area, as `slivers`, is held by springs of the mean stiffness.
 pub(super) fn share_out(
     rest: &[Vec3],
     cells: &Cells,

@@ -3,7 +3,7 @@
 //! ```text
 //!   structural          shear          bend
 //!       o               o   o            o
-//!       |                \ /             |     two steps along a thread,
+//!       |                \ /             |     two steps along a strand,
 //!    o--x--o              x         o----x----o  or across an edge between
 //!       |                / \             |     free triangles
 //!       o               o   o            o
@@ -18,7 +18,7 @@ use super::{
 };
 use crate::SpringKind;
 
-/// Largest cosine between two edges that count as one thread going straight on: 120° and more between them.
+/// Largest cosine between two edges that count as one strand going straight on: 120° and more between them.
 const STRAIGHT: f32 = -0.5;
 
 /// A spring before it has a rest length: kind and ends, the lower index first.
@@ -45,13 +45,13 @@ pub(crate) fn find(
         let cell = |side: &HalfEdge| cells.of_triangle[side.triangle as usize];
         matches!(sides, [one, other] if cell(one).is_some() && cell(one) == cell(other))
     };
-    let threads: Vec<&[HalfEdge]> = edges.iter().filter(|sides| !is_diagonal(sides)).collect();
-    links.extend(threads.iter().map(|sides| link(SpringKind::Structural, sides[0].a, sides[0].b)));
+    let structural: Vec<&[HalfEdge]> = edges.iter().filter(|sides| !is_diagonal(sides)).collect();
+    links.extend(structural.iter().map(|sides| link(SpringKind::Structural, sides[0].a, sides[0].b)));
     for &[i, j, k] in slivers {
         links.extend([(i, j), (j, k), (k, i)].map(|(p, q)| link(SpringKind::Structural, p, q)));
     }
-    links.extend(bends_across_edges(&threads, cells));
-    links.extend(bends_along_threads(rest, triangles, &threads, cells));
+    links.extend(bends_across_edges(&structural, cells));
+    links.extend(bends_along_strands(rest, triangles, &structural, cells));
 
     // Where two kinds claim a pair, the first in the order of `SpringKind` has it.
     let mut at_lower: Grouped<(u32, SpringKind)> =
@@ -72,9 +72,9 @@ fn link(kind: SpringKind, p: u32, q: u32) -> Link {
 }
 
 /// Bending across edges that aren't between two cells.
-fn bends_across_edges(threads: &[&[HalfEdge]], cells: &Cells) -> Vec<Link> {
+fn bends_across_edges(structural: &[&[HalfEdge]], cells: &Cells) -> Vec<Link> {
     let in_cell = |side: &HalfEdge| cells.of_triangle[side.triangle as usize].is_some();
-    threads
+    structural
         .iter()
         .filter_map(|sides| match sides {
             [one, other] if !(in_cell(one) && in_cell(other)) => {
@@ -87,14 +87,14 @@ fn bends_across_edges(threads: &[&[HalfEdge]], cells: &Cells) -> Vec<Link> {
 }
 
 /// Bending through particles that have cells all around: their edges that go straight on join their far ends.
-fn bends_along_threads(rest: &[Vec3], triangles: &[[u32; 3]], threads: &[&[HalfEdge]], cells: &Cells) -> Vec<Link> {
+fn bends_along_strands(rest: &[Vec3], triangles: &[[u32; 3]], structural: &[&[HalfEdge]], cells: &Cells) -> Vec<Link> {
     let mut all_cells = vec![true; rest.len()];
     for (triangle, cell) in triangles.iter().zip(&cells.of_triangle) {
         for &particle in triangle {
             all_cells[particle as usize] &= cell.is_some();
         }
     }
-    let ends = threads.iter().flat_map(|&sides| {
+    let ends = structural.iter().flat_map(|&sides| {
         let HalfEdge { a, b, .. } = sides[0];
         [(a, (b, sides)), (b, (a, sides))]
     });

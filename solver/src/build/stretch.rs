@@ -69,8 +69,8 @@ pub fn stretch(
     if let Some((lattice, built)) = topology.lattice.as_mut().zip(built.lattice.as_ref()) {
         stretch_lattice(lattice, built, &places);
     }
-    for (braid, built) in topology.strand_packs.iter_mut().zip(&built.strand_packs) {
-        stretch_braid(braid, built, &ratio);
+    for (pack, built) in topology.strand_packs.iter_mut().zip(&built.strand_packs) {
+        stretch_pack(pack, built, &ratio);
     }
     let mut of_levels = Vec::new();
     for (level, built) in topology.levels.iter_mut().zip(&built.levels) {
@@ -107,10 +107,10 @@ fn stretch_lattice(lattice: &mut Lattice, built: &Lattice, places: &Places) {
     };
     let along_row = |pack: usize, node: usize, lane: usize| (pack * LANES + lane, node);
     let along_column = |pack: usize, node: usize, lane: usize| (node, pack * LANES + lane);
-    stretch_threads(&mut lattice.along_rows, &built.along_rows, |at, steps| {
+    stretch_strands(&mut lattice.along_rows, &built.along_rows, |at, steps| {
         ratio(along_row(at.0, at.1, at.2), (0, steps))
     });
-    stretch_threads(&mut lattice.along_columns, &built.along_columns, |at, steps| {
+    stretch_strands(&mut lattice.along_columns, &built.along_columns, |at, steps| {
         ratio(along_column(at.0, at.1, at.2), (steps, 0))
     });
     // The diagonals of a cell begin at its first column and at its second.
@@ -134,8 +134,8 @@ fn stretch_lattice(lattice: &mut Lattice, built: &Lattice, places: &Places) {
     }
 }
 
-/// Stretches threads by the ratio at (pack, node, lane), over so many steps.
-fn stretch_threads(threads: &mut StrandSet, built: &StrandSet, ratio: impl Fn((usize, usize, usize), usize) -> f32) {
+/// Stretches strands by the ratio at (pack, node, lane), over so many steps.
+fn stretch_strands(strands: &mut StrandSet, built: &StrandSet, ratio: impl Fn((usize, usize, usize), usize) -> f32) {
     for i in 0..built.stretch.len() {
         let (pack, node) = (i / built.nodes, i % built.nodes);
         let lane = |steps: usize| -> Lane { core::array::from_fn(|l| ratio((pack, node, l), steps)) };
@@ -143,34 +143,34 @@ fn stretch_threads(threads: &mut StrandSet, built: &StrandSet, ratio: impl Fn((u
         // The bend at a node begins at the one before.
         let around: Lane = core::array::from_fn(|l| node.checked_sub(1).map_or(1.0, |node| ratio((pack, node, l), 2)));
         for l in 0..LANES {
-            threads.stretch[i][l] = built.stretch[i][l] * one[l];
-            threads.bend[i][l] = built.bend[i][l] * two[l];
+            strands.stretch[i][l] = built.stretch[i][l] * one[l];
+            strands.bend[i][l] = built.bend[i][l] * two[l];
             for part in 0..2 {
-                threads.shares[i][part][l] = built.shares[i][part][l] / one[l];
-                threads.curvature[i][part][l] = built.curvature[i][part][l] / around[l];
+                strands.shares[i][part][l] = built.shares[i][part][l] / one[l];
+                strands.curvature[i][part][l] = built.curvature[i][part][l] / around[l];
             }
         }
     }
 }
 
-fn stretch_braid(braid: &mut StrandPack, built: &StrandPack, ratio: &impl Fn(u32, u32) -> f32) {
+fn stretch_pack(pack: &mut StrandPack, built: &StrandPack, ratio: &impl Fn(u32, u32) -> f32) {
     let count = built.nodes.len();
     for i in 0..count {
         for l in 0..LANES {
             let over = |steps: usize| ratio(built.nodes[i][l], built.nodes[(i + steps) % count][l]);
             let along = over(1);
-            braid.stretch[i][l] = built.stretch[i][l] * along;
-            if let Some((bend, built)) = braid.bend.get_mut(i).zip(built.bend.get(i)) {
+            pack.stretch[i][l] = built.stretch[i][l] * along;
+            if let Some((bend, built)) = pack.bend.get_mut(i).zip(built.bend.get(i)) {
                 bend[l] = built[l] * over(2);
             }
-            if let Some((shares, built)) = braid.shares.get_mut(i).zip(built.shares.get(i)) {
+            if let Some((shares, built)) = pack.shares.get_mut(i).zip(built.shares.get(i)) {
                 (0..3).for_each(|part| shares[part][l] = built[part][l] / along);
             }
         }
     }
 }
 
-/// A face whose corners have gone from `built` to `rest`. Its warp goes along, as threads do.
+/// A face whose corners have gone from `built` to `rest`. Its warp goes along, as strands do.
 fn stretched_face(face: &Face, built: &[Vec3], rest: &[Vec3], stretch: Mat3A) -> Face {
     let [a, b, c] = face.particles.map(|i| built[i as usize]);
     let warp = (b - a) * face.warp[0] + (c - a) * face.warp[1];

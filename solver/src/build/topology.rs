@@ -15,7 +15,7 @@ use super::{
     lattice::{self, Rectangle},
     levels,
     plate::Plate,
-    rate, shares, springs, strand_packs, threads,
+    rate, shares, springs, strand_packs, strands,
 };
 use crate::{
     build::MeshError,
@@ -67,17 +67,18 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
     };
     let mut all: Vec<_> = links.iter().map(with_length).collect();
     let rectangle = rectangle.filter(Rectangle::is_in_order);
-    // Rows and columns are threads, whichever way they run.
+    // Rows and columns are strands, whichever way they run.
     let carrying = if rectangle.is_some() { cells.clone() } else { cells.true_to(&rest, &warp) };
     shares::share_out(&rest, &carrying, &slivers, &warp, &mut all);
     let plate = rectangle.as_ref().map(|rectangle| Plate::new(&rest, rectangle));
-    let woven = rectangle.as_ref().zip(plate.as_ref()).map(|(rectangle, plate)| lattice::weave(rectangle, plate, &all));
-    let (lattice, strand_packs, woven) = match woven {
-        Some((lattice, woven)) => (Some(lattice), Vec::new(), woven),
+    let on_strands =
+        rectangle.as_ref().zip(plate.as_ref()).map(|(rectangle, plate)| lattice::of_rectangle(rectangle, plate, &all));
+    let (lattice, strand_packs, on_strands) = match on_strands {
+        Some((lattice, on_strands)) => (Some(lattice), Vec::new(), on_strands),
         None => {
-            let threads = threads::find(&rest, &edges, &all);
-            let (strand_packs, woven) = strand_packs::plait(rest.len(), &threads, &all);
-            (None, strand_packs, woven)
+            let strands = strands::find(&rest, &edges, &all);
+            let (strand_packs, on_strands) = strand_packs::pack(rest.len(), &strands, &all);
+            (None, strand_packs, on_strands)
         }
     };
     let levels = match &lattice {
@@ -86,7 +87,7 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
             .map(|chart| levels::of_chart(&rest, &triangles, &chart))
             .unwrap_or_default(),
     };
-    let (springs, batches) = coloring::batches(rest.len(), &all, &woven);
+    let (springs, batches) = coloring::batches(rest.len(), &all, &on_strands);
     let triangle_areas: Vec<f32> = triangles.iter().map(|triangle| triangle_area(&rest, triangle)).collect();
     let areas = particle_areas(rest.len(), &triangles, &triangle_areas);
     let (faces, face_batches) = faces::find(&rest, &triangles, &carrying, &warp);

@@ -213,7 +213,7 @@ impl LevelNodes {
         };
         let spring = Scaled { c: 0.0, ..run.stretch };
         let strand_material =
-            StrandMaterial::SpringResponse(TensionOnly { spring, give: 1.0 + (run.slack - TAUTER).max(0.0) });
+            StrandMaterial::LevelSprings(TensionOnly { spring, rest_scale: 1.0 + (run.slack - TAUTER).max(0.0) });
         let grid_solver = GridStrandSolver {
             lattice: &level.lattice,
             strand_material,

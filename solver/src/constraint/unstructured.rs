@@ -28,8 +28,8 @@ pub(crate) struct UnstructuredPass<'a> {
     pub material: &'a Material,
     /// Duration of the substep, s.
     pub h: f32,
-    /// Whether also what is woven.
-    pub woven: bool,
+    /// Whether also what is on strands.
+    pub with_strands: bool,
     /// How bends are solved, if there are any.
     pub bending: Option<BendSolver>,
     /// The strand packs, where they are solved as such.
@@ -46,9 +46,9 @@ impl UnstructuredPass<'_> {
         ways: &mut ChebyshevBuffers,
         simd_level: SimdLevel,
     ) {
-        let Self { topology, material, h, woven, bending, strand_pack_solver } = self;
+        let Self { topology, material, h, with_strands, bending, strand_pack_solver } = self;
         let grid = material.moduli().map(|moduli| DirectionModuli::both(moduli, h));
-        let batches = topology.batches.iter().filter(|batch| woven || !batch.woven);
+        let batches = topology.batches.iter().filter(|batch| with_strands || !batch.on_strand);
         let batches = batches.filter_map(|batch| Some((batch, BatchLaw::new(material, batch, h)?)));
         let springs = |batch: &SpringBatch| &topology.springs[batch.range.clone()];
         let count: usize = batches.clone().map(|(batch, _)| batch.range.len()).sum();
@@ -62,7 +62,7 @@ impl UnstructuredPass<'_> {
         }
         gathered.read(lanes, material.is_damped(), simd_level);
         if let Some(bending) = bending {
-            bend::solve(gathered, ways, topology, woven, bending, simd_level);
+            bend::solve(gathered, ways, topology, with_strands, bending, simd_level);
         }
         if let Some(grid) = &grid {
             for batch in &topology.face_batches {

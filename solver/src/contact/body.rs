@@ -20,9 +20,9 @@ pub(crate) struct Bodies {
     /// Of each obstacle that is one.
     moved: Vec<Option<MovedBody>>,
     /// What each obstacle was given.
-    pub pushes: Vec<BodyImpulse>,
+    pub impulses: Vec<BodyImpulse>,
     /// How far each has come off its path.
-    pub strays: Vec<BodyDisplacement>,
+    pub displacements: Vec<BodyDisplacement>,
 }
 
 /// A body within a step.
@@ -55,13 +55,13 @@ pub(crate) struct MovedBody {
 impl Bodies {
     /// Begins a step: all are on their paths.
     pub fn begin(&mut self, ctx: &StepContext) {
-        let Self { moved, pushes, strays } = self;
+        let Self { moved, impulses, displacements } = self;
         moved.clear();
         moved.extend(ctx.obstacles.iter().map(MovedBody::new));
-        pushes.clear();
-        pushes.resize(moved.len(), BodyImpulse::default());
-        strays.clear();
-        strays.resize(moved.len(), BodyDisplacement::default());
+        impulses.clear();
+        impulses.resize(moved.len(), BodyImpulse::default());
+        displacements.clear();
+        displacements.resize(moved.len(), BodyDisplacement::default());
     }
 
     /// Leads all bodies through the part `span` (0..=1) of the step, a substep of `h` seconds, as if they touched nothing.
@@ -69,7 +69,7 @@ impl Bodies {
         for (i, (moved, obstacle)) in self.moved.iter_mut().zip(ctx.obstacles).enumerate() {
             if let Some(moved) = moved {
                 moved.advance(obstacle, span.end, h);
-                self.strays[i] = moved.stray();
+                self.displacements[i] = moved.displacement();
             }
         }
     }
@@ -106,11 +106,11 @@ impl Bodies {
     /// its centre of mass, in kg m². Nothing moves what is no body.
     pub fn push(&mut self, obstacle: usize, linear: Vec3A, angular: Vec3A) {
         if let Some(Some(moved)) = self.moved.get_mut(obstacle) {
-            let (push, stray) = (&mut self.pushes[obstacle], &mut self.strays[obstacle]);
+            let (impulse, displacement) = (&mut self.impulses[obstacle], &mut self.displacements[obstacle]);
             moved.push(linear, angular);
-            push.linear += linear / moved.h;
-            push.angular += angular / moved.h;
-            *stray = moved.stray();
+            impulse.linear += linear / moved.h;
+            impulse.angular += angular / moved.h;
+            *displacement = moved.displacement();
         }
     }
 }
@@ -169,7 +169,7 @@ impl MovedBody {
         ahead.end
     }
 
-    fn stray(&self) -> BodyDisplacement {
+    fn displacement(&self) -> BodyDisplacement {
         BodyDisplacement { shift: self.shift, turn: self.turn }
     }
 

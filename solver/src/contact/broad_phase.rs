@@ -56,7 +56,7 @@ pub(crate) struct NearObstacle {
     /// Where it was when the particles were at their start.
     pose: Isometry3d,
     /// How far it had come off its path by then.
-    stray: BodyDisplacement,
+    displacement: BodyDisplacement,
     /// The farthest from its origin that anything happens, m.
     far: f32,
     /// Its stretches.
@@ -187,8 +187,9 @@ impl BroadPhase {
     /// How far any particle has come, and any obstacle off its path, m.
     fn farthest(&self, bodies: &Bodies) -> f32 {
         let of_obstacles = self.obstacles.iter().map(|near| {
-            let stray = bodies.strays[near.obstacle];
-            stray.shift.distance(near.stray.shift) + ccd::turn_between(stray.turn, near.stray.turn, near.far)
+            let displacement = bodies.displacements[near.obstacle];
+            displacement.shift.distance(near.displacement.shift)
+                + ccd::turn_between(displacement.turn, near.displacement.turn, near.far)
         });
         self.moved.iter().copied().chain(of_obstacles).fold(0.0, f32::max)
     }
@@ -244,8 +245,8 @@ impl BroadPhase {
                 }
             }
             if reachable.len() > first {
-                let stray = bodies.strays[obstacle];
-                obstacles.push(NearObstacle { obstacle, pose, stray, far, reachable: first..reachable.len() });
+                let displacement = bodies.displacements[obstacle];
+                obstacles.push(NearObstacle { obstacle, pose, displacement, far, reachable: first..reachable.len() });
             }
         }
     }

@@ -10,8 +10,8 @@ use bevy_math::Vec3A;
 use crate::layout::{number::Number, simd::Vec3Wide};
 
 /// Weights of the corners of the triangle `[a, b, c]` at its place closest to `p`. Ericson, "Real-Time Collision
-/// Detection" (2005), section 5.1.5: in front of which corner, side or face `p` is. All
-/// are finite and 1 in sum, but for rounding; of a triangle with next to no area, which is all rounding, some may be below 0.
+/// Detection" (2005), section 5.1.5: in front of which corner, side or face `p` is. All are finite and 1 in sum, but for
+/// rounding; of a triangle with next to no area, which is all rounding, some may be below 0.
 #[inline]
 pub fn on_triangle(p: Vec3A, [a, b, c]: [Vec3A; 3]) -> Vec3A {
     let (ab, ac, ap) = (b - a, c - a, p - a);

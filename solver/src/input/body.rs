@@ -25,9 +25,9 @@ pub struct BodyImpulse {
 /// How far a body has come off its given path by what a cloth has given to it within a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyDisplacement {
-    /// Way of its centre of mass, m.
+    /// Displacement of its centre of mass, m.
     pub shift: Vec3A,
-    /// Turn about it.
+    /// Rotation about it.
     pub turn: Quat,
 }
 
@@ -37,20 +37,20 @@ impl Default for BodyDisplacement {
     }
 }
 
-/// A body that pins are fixed to, on its way over one step.
+/// A body that pins are fixed to, and how it moves over one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyAttachment {
     /// What it takes to move it.
     pub body: Body,
-    /// Way of its centre of mass over the step if the cloth didn't pull, m.
-    pub way: Vec3A,
+    /// Displacement of its centre of mass over the step if the cloth didn't pull, m.
+    pub displacement: Vec3A,
 }
 
 /// A pin that is fixed to a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AttachedPin {
     /// Number of the pin in [`crate::input::StepContext::pin_motions`].
-    pub anchor: u32,
+    pub pin_motion: u32,
     /// Number of the body in [`crate::input::StepContext::body_attachments`].
-    pub mount: u32,
+    pub attachment: u32,
 }

@@ -1,10 +1,10 @@
-//! Hands that hold a cloth, on their way over one step.
+//! Hands that hold a cloth, and how they move over one step.
 
 use std::sync::Arc;
 
 use bevy_math::Vec3A;
 
-/// A hand on its way over one step.
+/// A hand, and how it moves over one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grab {
     /// The triangle's particles.

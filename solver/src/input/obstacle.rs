@@ -1,10 +1,10 @@
-//! Obstacles on their way over one step.
+//! Obstacles, and how they move over one step.
 
 use bevy_math::Isometry3d;
 
 use crate::{input::Body, shape::Shape};
 
-/// Something that cloth can't enter, on its way over one step.
+/// Something that cloth can't enter, and how it moves over one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
     /// Its shape.

@@ -1,8 +1,8 @@
-//! Pins on their way over one step.
+//! How pins move over one step.
 
 use bevy_math::Vec3A;
 
-/// The way of a fixed particle over one step, m, relative to the cloth's origin.
+/// How a fixed particle moves over one step, m, relative to the cloth's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinMotion {
     /// The particle that is held.

@@ -56,7 +56,7 @@ impl SubstepPolicy {
     /// only, with the one below.
     const STRAIN_OF_ONE: f32 = 0.1;
     const GROWTH: f32 = 1.2;
-    const GROWTH_ON_THREADS: f32 = 0.8;
+    const GROWTH_ON_STRANDS: f32 = 0.8;
 
     /// The same with levels.
     const STRAIN_WITH_LEVELS: f32 = 0.03;
@@ -90,7 +90,7 @@ impl SubstepPolicy {
         let grown = |of_64: f32, power: f32| of_64 * bevy_math::ops::powf(side(topology) / 64.0, power) / max_strain;
         let without = match topology.structure() {
             MeshStructure::Grid { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH),
-            MeshStructure::Strands { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH_ON_THREADS),
+            MeshStructure::Strands { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH_ON_STRANDS),
             MeshStructure::Unstructured { .. } => f32::INFINITY,
         };
         let with_levels = without > Self::MOST_WITHOUT_LEVELS;

@@ -54,7 +54,7 @@ pub(crate) struct SharedStep<'a> {
 /// Buffers of one thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WorkerScratch {
-    /// Threads that are being solved.
+    /// Strands that are being solved.
     pub strand_scratch: StrandScratch,
     /// Rows between bands.
     pub seam: Seam,
@@ -80,7 +80,7 @@ pub(crate) fn solve(pool: &TaskPool, lanes: &mut Lanes, worker_scratches: &mut V
     let rows = |band, worker| cloth.solve_rows(band, worker);
     let end = |band, _| cloth.finish(band);
     let bands = cloth.bands.len();
-    let [first, second] = work.last.order().map(|threads| match threads {
+    let [first, second] = work.last.order().map(|strands| match strands {
         StrandDirection::Columns => Phase { units: order.pack_count().div_ceil(2), work: &columns },
         StrandDirection::Rows => Phase { units: bands, work: &rows },
     });
@@ -168,7 +168,7 @@ impl Cloth<'_> {
         }
         tether::solve(position, inverse_mass, *first, tethers, pins, slack, simd_level);
         let shear_scratch = &mut lock(&self.worker_scratches[worker]).shear_scratch;
-        cells::solve_band(&mut run.sheet(), band, 0, lattice, cells, shear_scratch, simd_level);
+        cells::solve_band(&mut run.grid(), band, 0, lattice, cells, shear_scratch, simd_level);
     }
 
     /// The diagonals below odd rows, and those to the band above: they have no particle in common.
@@ -176,10 +176,10 @@ impl Cloth<'_> {
         let SharedStep { grid_solver: GridStrandSolver { lattice, simd_level, .. }, cells, .. } = *self.work;
         let band = self.bands[number];
         let WorkerScratch { seam, shear_scratch, .. } = &mut **lock(&self.worker_scratches[worker]);
-        cells::solve_band(&mut lock(&self.runs[number]).sheet(), band, 1, lattice, cells, shear_scratch, simd_level);
+        cells::solve_band(&mut lock(&self.runs[number]).grid(), band, 1, lattice, cells, shear_scratch, simd_level);
         let Some(above) = number.checked_sub(1) else { return };
         for (row, band) in [above, number].into_iter().enumerate() {
-            seam.take(&lock(&self.runs[band]).sheet(), self.bands[band], row);
+            seam.take(&lock(&self.runs[band]).grid(), self.bands[band], row);
         }
         seam.solve(band, lattice, cells, shear_scratch, simd_level);
         for (row, band) in [above, number].into_iter().enumerate() {
@@ -192,7 +192,7 @@ impl Cloth<'_> {
         let (grid_solver, first) = (&self.work.grid_solver, 2 * pair);
         let strand_scratch = &mut lock(&self.worker_scratches[worker]).strand_scratch;
         for (&band, run) in self.bands.iter().zip(&self.runs) {
-            grid_solver.take_columns(&lock(run).sheet(), band, first, strand_scratch);
+            grid_solver.take_columns(&lock(run).grid(), band, first, strand_scratch);
         }
         grid_solver.solve_taken_columns(first, strand_scratch);
         for (&band, run) in self.bands.iter().zip(&self.runs) {
@@ -203,7 +203,7 @@ impl Cloth<'_> {
     fn solve_rows(&self, number: usize, worker: usize) {
         let strand_scratch = &mut lock(&self.worker_scratches[worker]).strand_scratch;
         let part = &mut lock(&self.runs[number]);
-        self.work.grid_solver.solve_rows(&mut part.sheet(), self.bands[number], strand_scratch);
+        self.work.grid_solver.solve_rows(&mut part.grid(), self.bands[number], strand_scratch);
     }
 
     fn finish(&self, number: usize) {

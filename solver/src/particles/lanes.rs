@@ -90,7 +90,7 @@ pub(crate) struct Run<'a> {
 
 impl Run<'_> {
     /// What constraints of a lattice work on.
-    pub fn sheet(&mut self) -> GridView<'_> {
+    pub fn grid(&mut self) -> GridView<'_> {
         let Self { position, previous, inverse_mass, row_masses, .. } = self;
         GridView { position, previous, inverse_mass, row_masses }
     }

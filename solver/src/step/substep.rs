@@ -56,8 +56,8 @@ impl Substep<'_> {
     /// Works out what doesn't change from substep to substep.
     pub fn prepare(&self, scratch: &mut Scratch) {
         let is_solved = self.ctx.settings.method != Method::Explicit;
-        let woven = self.ctx.settings.method == Method::Xpbd;
-        let bending = || BendSolver::new(self.topology, woven, &self.ctx.material, &scratch.lanes, self.h);
+        let with_strands = self.ctx.settings.method == Method::Xpbd;
+        let bending = || BendSolver::new(self.topology, with_strands, &self.ctx.material, &scratch.lanes, self.h);
         scratch.bending = is_solved.then(bending).flatten();
         // Threads that share the work have done it already.
         if self.ctx.settings.method == Method::Strands && self.topology.lattice.is_some() && self.helpers.is_none() {
@@ -132,7 +132,7 @@ impl Substep<'_> {
         Finish { limit: self.limit, h: self.h, next: goes_on.then(|| self.motion(force)) }
     }
 
-    /// Coarse levels, tethers, and then the springs: threads as strands, the last and best held. Of a large cloth threads
+    /// Coarse levels, tethers, and then the springs: strands the last, and best held. Of a large cloth threads
     /// also finish the substep: true where they did.
     pub fn solve_strands(&self, scratch: &mut Scratch, goes_on: bool) -> bool {
         let run = self.levels(scratch);
@@ -185,9 +185,9 @@ impl Substep<'_> {
         self.loose(false, *bending, strand_pack_solver).solve(lanes, gathered, ways, *simd_level);
         if let Some(lattice) = &self.topology.lattice {
             let mut run = lanes.whole();
-            let mut sheet = run.sheet();
+            let mut grid = run.grid();
             cells::solve(
-                &mut sheet,
+                &mut grid,
                 lattice,
                 CellMaterial::new(material, h, bend_factors),
                 seam,
@@ -195,7 +195,7 @@ impl Substep<'_> {
                 *simd_level,
             );
             GridStrandSolver { lattice, strand_material, bend_factors, simd_level: *simd_level }.solve(
-                &mut sheet,
+                &mut grid,
                 self.last,
                 strand_scratch,
             );
@@ -211,7 +211,7 @@ impl Substep<'_> {
 
     fn loose<'a>(
         &'a self,
-        woven: bool,
+        with_strands: bool,
         bending: Option<BendSolver>,
         strand_pack_solver: Option<StrandPackSolver<'a>>,
     ) -> UnstructuredPass<'a> {
@@ -219,7 +219,7 @@ impl Substep<'_> {
             topology: self.topology,
             material: &self.ctx.material,
             h: self.h,
-            woven,
+            with_strands,
             bending,
             strand_pack_solver,
         }
@@ -242,7 +242,7 @@ impl Substep<'_> {
             passes: self.levels,
             tethers: self.ctx.tethers.filter(|tethers| !tethers.is_empty())?,
             slack: self.slack,
-            stretch: Scaled::new(self.ctx.material.thread_stiffness(), self.h),
+            stretch: Scaled::new(self.ctx.material.strand_stiffness(), self.h),
             last: self.last,
             simd_level: scratch.simd_level,
         })

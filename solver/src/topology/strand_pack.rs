@@ -25,7 +25,7 @@ pub struct StrandPack {
 
 impl StrandPack {
     /// Number of strands.
-    pub fn thread_count(&self) -> usize {
+    pub fn strand_count(&self) -> usize {
         self.stretch.first().map_or(0, |rest| rest.iter().filter(|&&rest| rest > 0.0).count())
     }
 

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::topology::{Topology, strand_pack::StrandPack};
 
 /// How a cloth's springs are solved by [`Method::Strands`](crate::input::Method::Strands). Written out, it is a text such as
-/// "64 rows, 64 columns", "190 threads" or "springs in 14 colours".
+/// "64 rows, 64 columns", "190 strands" or "springs in 14 colours".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshStructure {
     /// As rows and columns: the mesh is one rectangle, or a tube.
@@ -17,9 +17,9 @@ pub enum MeshStructure {
         /// Whether rows are rings.
         closed: bool,
     },
-    /// As threads that go straight on from edge to edge: the mesh is regular.
+    /// As strands that go straight on from edge to edge: the mesh is regular.
     Strands {
-        /// Number of threads.
+        /// Number of strands.
         count: usize,
     },
     /// One by one, those that share no particle side by side: the mesh is irregular.
@@ -34,7 +34,7 @@ impl fmt::Display for MeshStructure {
         match self {
             Self::Grid { rows, columns, closed: false } => write!(f, "{rows} rows, {columns} columns"),
             Self::Grid { rows, columns, closed: true } => write!(f, "{rows} rings, {columns} columns"),
-            Self::Strands { count } => write!(f, "{count} threads"),
+            Self::Strands { count } => write!(f, "{count} strands"),
             Self::Unstructured { colors } => write!(f, "springs in {colors} colours"),
         }
     }
@@ -48,7 +48,7 @@ impl Topology {
                 MeshStructure::Grid { rows: lattice.rows, columns: lattice.columns, closed: lattice.along_rows.closed }
             }
             None if self.strand_packs.is_empty() => MeshStructure::Unstructured { colors: self.batches.len() },
-            None => MeshStructure::Strands { count: self.strand_packs.iter().map(StrandPack::thread_count).sum() },
+            None => MeshStructure::Strands { count: self.strand_packs.iter().map(StrandPack::strand_count).sum() },
         }
     }
 }

@@ -66,12 +66,12 @@ impl Thing {
         let end = Isometry3d { rotation: self.rotation, translation: self.place };
         bed.obstacles = vec![Obstacle { body: Some(body), ..Obstacle::moving(self.solid, start, end) }];
         bed.step(FRAME);
-        let (push, stray) = (bed.scratch.pushes()[0], bed.scratch.strays()[0]);
-        self.velocity += push.linear / self.mass;
-        self.spin += push.angular;
+        let (impulse, displacement) = (bed.scratch.obstacle_impulses()[0], bed.scratch.obstacle_displacements()[0]);
+        self.velocity += impulse.linear / self.mass;
+        self.spin += impulse.angular;
         if self.follows {
-            self.place += stray.shift;
-            self.rotation = (stray.turn * self.rotation).normalize();
+            self.place += displacement.shift;
+            self.rotation = (displacement.turn * self.rotation).normalize();
         }
     }
 

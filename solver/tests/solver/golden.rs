@@ -55,7 +55,7 @@ fn end(mut stage: Stage, simd_level: SimdLevel, helpers: Option<usize>) -> u64 {
 fn assert_golden<const N: usize>(name: &str, golden: [u64; N], make: [&dyn Fn() -> Stage; N]) {
     let found = make.map(|make| {
         let alone = end(make(), SimdLevel::Best, None);
-        assert_eq!(alone, end(make(), SimdLevel::Baseline, None), "{name}: simd_level make a difference");
+        assert_eq!(alone, end(make(), SimdLevel::Baseline, None), "{name}: SIMD levels make a difference");
         assert_eq!(alone, end(make(), SimdLevel::Best, Some(2)), "{name}: threads make a difference");
         alone
     });

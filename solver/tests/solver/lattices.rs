@@ -57,15 +57,15 @@ fn lattice_springs(topology: &Topology) -> BTreeSet<(u32, u32, u32)> {
     springs
 }
 
-/// The lattice and the batches that aren't woven have every spring once.
+/// The lattice and the batches that aren't on_lattice have every spring once.
 #[track_caller]
 fn assert_shared_out(topology: &Topology) {
-    let woven = topology.batches.iter().filter(|batch| batch.woven);
-    let woven: BTreeSet<(u32, u32, u32)> = woven
+    let on_lattice = topology.batches.iter().filter(|batch| batch.on_strand);
+    let on_lattice: BTreeSet<(u32, u32, u32)> = on_lattice
         .flat_map(|batch| &topology.springs[batch.range.clone()])
         .map(|spring| (spring.a.min(spring.b), spring.a.max(spring.b), spring.rest.to_bits()))
         .collect();
-    assert_eq!(lattice_springs(topology), woven);
+    assert_eq!(lattice_springs(topology), on_lattice);
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn an_open_tube_is_a_lattice_of_rings() {
             assert_eq!(sides(&topology), Some(expected), "{around} x {rings}");
             assert!(topology.lattice.as_ref().is_some_and(|lattice| lattice.along_rows.closed), "{around} x {rings}");
             assert_shared_out(&topology);
-            let loose = |kind| topology.batches.iter().filter(move |batch| batch.kind == kind && !batch.woven);
+            let loose = |kind| topology.batches.iter().filter(move |batch| batch.kind == kind && !batch.on_strand);
             let count = |kind| loose(kind).map(|batch| batch.range.len()).sum::<usize>() as u32;
             assert_eq!(count(SpringKind::Structural), 0, "rings are closed");
             assert_eq!(count(SpringKind::Shear), 2 * (rings - 1), "two diagonals of each cell at the seam");

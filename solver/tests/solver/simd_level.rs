@@ -13,7 +13,7 @@ use crate::{
         mesh::{Grid, icosphere, shaped},
     },
     lattices::{hexagons, strewn},
-    threads::{ell, sleeve},
+    strand_packs::{ell, sleeve},
 };
 
 /// Plain springs.

@@ -192,8 +192,9 @@ impl Block {
 
     /// Takes what cloths have given to it, and falls on for a frame.
     fn lead(&mut self, beds: &mut [Bed]) {
-        let of_contact = beds.iter().flat_map(|bed| bed.scratch.pushes());
-        let given = of_contact.chain(beds.iter().flat_map(|bed| bed.scratch.pulls().iter().map(|(push, _)| push)));
+        let of_contact = beds.iter().flat_map(|bed| bed.scratch.obstacle_impulses());
+        let given = of_contact
+            .chain(beds.iter().flat_map(|bed| bed.scratch.attachment_impulses().iter().map(|(push, _)| push)));
         for push in given {
             self.velocity += push.linear / self.mass;
             self.spin += push.angular / self.inertia;
@@ -211,7 +212,7 @@ impl Block {
             let body = Body { inverse_mass: 1.0 / self.mass, inverse_inertia, centre: start.translation };
             let cuboid = Solid::Cuboid(Cuboid::from_size(Self::SIZE.into()));
             bed.obstacles = vec![Obstacle { body: Some(body), ..Obstacle::moving(cuboid, start, end) }];
-            bed.mounts = vec![BodyAttachment { body, way: end.translation - start.translation }];
+            bed.body_attachments = vec![BodyAttachment { body, displacement: end.translation - start.translation }];
             for (anchor, &arm) in bed.pin_motions[*first..].iter_mut().zip(arms) {
                 anchor.start = bed.particles.position[anchor.particle as usize];
                 anchor.end = end.transform_point(arm);
@@ -234,8 +235,9 @@ pub fn swinging(method: Method) -> Stage {
         let first = bed.pin_motions.len();
         let at = |i: u32| bed.particles.position[i as usize] + bed.offset - place;
         arms.push((first, fixed.clone().map(at).collect()));
-        let mounted = (first..first + fixed.len()).map(|i| AttachedPin { anchor: i as u32, mount: 0 }).collect();
-        beds.push(Bed { method, mounted, self_collision: SelfCollision::Robust, ..bed }.pinned(fixed));
+        let attached_pins =
+            (first..first + fixed.len()).map(|i| AttachedPin { pin_motion: i as u32, attachment: 0 }).collect();
+        beds.push(Bed { method, attached_pins, self_collision: SelfCollision::Robust, ..bed }.pinned(fixed));
     }
     let (turn, spin, velocity) = (Quat::IDENTITY, Vec3A::Y * 0.5, Vec3A::new(0.5, 0.0, 0.25));
     let mut block = Block { mass: 0.125, inertia: 0.0013, place, turn, velocity, spin, arms };

@@ -32,7 +32,7 @@ const PARTICLES: Naming = naming("Particles", "Points with a mass: vertices at o
 const SPRINGS: Naming = naming("Springs", "Springs of all kinds.");
 const WEAVE: Naming = naming(
     "Mesh",
-    "What strands find in the mesh: rows and columns, which they hold best, threads that go straight on from edge to edge, \
+    "What strands find in the mesh: rows and columns, which they hold best, strands that go straight on from edge to edge, \
      or nothing but springs; and the coarse levels that it has, whether they are used or not.",
 );
 const SUBSTEPS: Naming = naming(

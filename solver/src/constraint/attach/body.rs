@@ -31,7 +31,7 @@ pub(crate) struct BodyAttachments {
     bodies: Vec<AttachedBody>,
     pin_motions: Vec<PinOnBody>,
     /// What each body has been given, and how far it has come off its path by that.
-    pub pulls: Vec<(BodyImpulse, BodyDisplacement)>,
+    pub impulses: Vec<(BodyImpulse, BodyDisplacement)>,
 }
 
 /// How a body has come off its way.
@@ -55,8 +55,9 @@ struct AttachedBody {
 #[derive(Clone, Copy, Debug)]
 struct PinOnBody {
     slot: usize,
-    anchor: PinMotion,
-    mount: usize,
+    motion: PinMotion,
+    /// Number of the body.
+    body: usize,
     /// Mass of the cloth there, and the part that it has of the mass of the body and all that is fixed to it, kg.
     own: f32,
     mass: f32,
@@ -104,7 +105,7 @@ impl AttachedBody {
     }
 
     /// Goes on for `h` seconds.
-    fn go_on(&mut self, velocity: Vec3A, spin: Vec3A, h: f32) {
+    fn advance(&mut self, velocity: Vec3A, spin: Vec3A, h: f32) {
         self.shift += velocity * h;
         // To first order in the angle: no transcendental function, and exact enough within a substep.
         let half = spin * (0.5 * h);
@@ -124,34 +125,34 @@ impl AttachedBody {
 impl BodyAttachments {
     /// Begins a step. From now on pins on bodies can be moved, until they [`rest`](Self::rest).
     pub fn begin(&mut self, lanes: &mut Lanes, topology: &Topology, ctx: &StepContext) {
-        let Self { bodies, pin_motions, pulls } = self;
-        pulls.clear();
-        pulls.resize(ctx.body_attachments.len(), (BodyImpulse::default(), BodyDisplacement::default()));
+        let Self { bodies, pin_motions, impulses } = self;
+        impulses.clear();
+        impulses.resize(ctx.body_attachments.len(), (BodyImpulse::default(), BodyDisplacement::default()));
         pin_motions.clear();
         pin_motions.extend(ctx.attached_pins.iter().map(|it| {
-            let (anchor, mount) = (ctx.pin_motions[it.anchor as usize], it.mount as usize);
-            let own = ctx.material.density * topology.areas[anchor.particle as usize];
-            let slot = lanes.order.slot(anchor.particle);
-            let arm = anchor.start - ctx.body_attachments[mount].body.centre;
+            let (motion, body) = (ctx.pin_motions[it.pin_motion as usize], it.attachment as usize);
+            let own = ctx.material.density * topology.areas[motion.particle as usize];
+            let slot = lanes.order.slot(motion.particle);
+            let arm = motion.start - ctx.body_attachments[body].body.centre;
             PinOnBody {
                 slot,
-                anchor,
-                mount,
+                motion,
+                body,
                 own,
                 mass: 0.0,
                 arm,
-                place: anchor.start,
+                place: motion.start,
                 velocity: lanes.velocity.get(slot),
             }
         }));
         bodies.clear();
-        bodies.extend(ctx.body_attachments.iter().enumerate().map(|(mount, it)| {
-            let on_it = || pin_motions.iter().filter(|held| held.mount == mount).map(|held| (held.arm, held.own));
+        bodies.extend(ctx.body_attachments.iter().enumerate().map(|(number, it)| {
+            let on_it = || pin_motions.iter().filter(|held| held.body == number).map(|held| (held.arm, held.own));
             AttachedBody::new(CombinedBody::new(&it.body, on_it), it.body.centre)
         }));
         for held in &mut *pin_motions {
-            let load = &bodies[held.mount].load;
-            held.mass = 1.0 / (load.pin_motions * load.give(held.arm));
+            let load = &bodies[held.body].load;
+            held.mass = 1.0 / (load.pin_count * load.effective_inverse_mass(held.arm));
         }
         // What nothing moves is fixed as any other pin is.
         pin_motions.retain(|held| held.mass.is_finite());
@@ -176,22 +177,22 @@ impl BodyAttachments {
     pub fn advance(&mut self, lanes: &mut Lanes, ctx: &StepContext, span: Range<f32>, dt: f32, force: Option<&Points>) {
         let h = (span.end - span.start) * dt;
         for held in &self.pin_motions {
-            let body = &mut self.bodies[held.mount];
+            let body = &mut self.bodies[held.body];
             let arm = body.turn * held.arm;
             // What is fixed to the body goes on as before, and falls, while the body is led.
-            let led = (held.anchor.end - held.anchor.start) / dt + body.velocity + body.spin.cross(arm);
+            let led = (held.motion.end - held.motion.start) / dt + body.velocity + body.spin.cross(arm);
             let left = (held.velocity - led + ctx.gravity * h) * held.own;
             let blown = force.map_or(Vec3A::ZERO, |force| force.get(held.slot) * h);
             body.take(arm, left + blown);
         }
-        for (body, mount) in self.bodies.iter_mut().zip(ctx.body_attachments) {
-            body.centre = mount.body.centre + mount.way * span.end;
+        for (body, attachment) in self.bodies.iter_mut().zip(ctx.body_attachments) {
+            body.centre = attachment.body.centre + attachment.displacement * span.end;
             body.gain(ctx.settings.max_velocity);
-            body.go_on(body.velocity, body.spin, h);
+            body.advance(body.velocity, body.spin, h);
         }
         for held in &mut self.pin_motions {
-            let body = &self.bodies[held.mount];
-            held.arm = held.anchor.start.lerp(held.anchor.end, span.end) - body.centre;
+            let body = &self.bodies[held.body];
+            held.arm = held.motion.start.lerp(held.motion.end, span.end) - body.centre;
             held.place = body.place(held.arm);
             lanes.position.set(held.slot, held.place);
         }
@@ -201,19 +202,19 @@ impl BodyAttachments {
     /// Gives the bodies what has pulled at their pins for `h` seconds, puts these where the bodies have them, and has
     /// them rest.
     pub fn settle(&mut self, lanes: &mut Lanes, ctx: &StepContext, h: f32) {
-        let Self { bodies, pin_motions, pulls } = self;
+        let Self { bodies, pin_motions, impulses } = self;
         for held in &*pin_motions {
             let pull = (lanes.position.get(held.slot) - held.place) * (held.mass / h);
-            let body = &mut bodies[held.mount];
+            let body = &mut bodies[held.body];
             body.take(body.turn * held.arm, pull);
         }
-        for ((body, mount), pull) in bodies.iter_mut().zip(ctx.body_attachments).zip(&mut *pulls) {
+        for ((body, attachment), impulse) in bodies.iter_mut().zip(ctx.body_attachments).zip(&mut *impulses) {
             let [velocity, spin] = body.gain(ctx.settings.max_velocity);
-            body.go_on(velocity, spin, h);
-            *pull = (body.push(&mount.body), BodyDisplacement { shift: body.shift, turn: body.turn });
+            body.advance(velocity, spin, h);
+            *impulse = (body.push(&attachment.body), BodyDisplacement { shift: body.shift, turn: body.turn });
         }
         for held in pin_motions {
-            held.place = bodies[held.mount].place(held.arm);
+            held.place = bodies[held.body].place(held.arm);
             held.velocity = (held.place - lanes.previous.get(held.slot)) / h;
             lanes.position.set(held.slot, held.place);
             lanes.velocity.set(held.slot, held.velocity);
@@ -233,7 +234,7 @@ mod tests {
         let body = Body { inverse_mass: 1.0, inverse_inertia: Mat3A::IDENTITY, centre: Vec3A::ZERO };
         let mut body = AttachedBody::new(CombinedBody::new(&body, || [].into_iter()), Vec3A::ZERO);
         for _ in 0..100 {
-            body.go_on(Vec3A::X, Vec3A::Z, 0.01);
+            body.advance(Vec3A::X, Vec3A::Z, 0.01);
         }
         assert!(body.turn.angle_between(Quat::from_rotation_z(1.0)) < 1e-3, "{}", body.turn);
         assert!((body.shift - Vec3A::X).length() < 1e-5);

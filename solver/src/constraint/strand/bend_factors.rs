@@ -135,13 +135,13 @@ impl Places<'_> {
     /// From each particle to the next one right; to the last column, from the one left, or of a ring to the first column.
     #[inline(always)]
     fn towards_right<S: Simd>(&self, simd: S, row: usize, pack: usize, here: Vec3x8<S>) -> Vec3x8<S> {
-        let threads = &self.lattice.along_rows;
+        let strands = &self.lattice.along_rows;
         let towards = self.right(simd, row, pack, here) - here;
-        let last = threads.count - 1;
+        let last = strands.count - 1;
         if last / LANES != pack {
             return towards;
         }
-        let at_end = if threads.closed {
+        let at_end = if strands.closed {
             let [x, y, z] = &self.blocks[self.lattice.order().block_at(row, 0)];
             Vec3x8::splat(simd, [x[0], y[0], z[0]]) - here
         } else {
@@ -163,7 +163,7 @@ pub(crate) fn prepare(
     strand_scratch: &mut StrandScratch,
     simd_level: SimdLevel,
 ) {
-    let StrandMaterial::GridView { rigidity: Some(rigidity), .. } = strand_material else { return };
+    let StrandMaterial::SheetStrands { rigidity: Some(rigidity), .. } = strand_material else { return };
     bend_factors.rest.turn(lattice, lanes, simd_level);
     let (order, level) = (lattice.order(), simd_level.level());
     let StrandSet { nodes, count, curvature: weights, .. } = &lattice.along_columns;

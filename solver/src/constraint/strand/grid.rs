@@ -101,8 +101,8 @@ pub(crate) struct GridStrandSolver<'a> {
 impl GridStrandSolver<'_> {
     /// Solves all columns and all rows.
     pub fn solve(&self, grid: &mut GridView, last: StrandDirection, strand_scratch: &mut StrandScratch) {
-        for threads in last.order() {
-            match threads {
+        for strands in last.order() {
+            match strands {
                 StrandDirection::Columns => self.solve_columns(grid, strand_scratch),
                 StrandDirection::Rows => {
                     for band in self.lattice.order().bands() {
@@ -176,8 +176,8 @@ impl GridStrandSolver<'_> {
 
     /// Solves the rows of a band.
     pub fn solve_rows(&self, part: &mut GridView, band: Band, strand_scratch: &mut StrandScratch) {
-        let (level, threads) = (self.simd_level.level(), &self.lattice.along_rows);
-        let nodes = threads.nodes;
+        let (level, strands) = (self.simd_level.level(), &self.lattice.along_rows);
+        let nodes = strands.nodes;
         strand_scratch.make_room(2 * nodes);
         let GridView { position, previous, row_masses, .. } = part;
         for first in (0..band.rows).step_by(2 * LANES) {
@@ -205,10 +205,10 @@ impl GridStrandSolver<'_> {
         self.run(&self.lattice.along_rows, &self.bend_factors.rows, &self.bend_factors.rest.rows, first)
     }
 
-    fn run<'a>(&self, threads: &'a StrandSet, factors: &'a [Factor], rest: &'a [Block], first: usize) -> StrandRun<'a> {
-        let first = first * threads.nodes;
+    fn run<'a>(&self, strands: &'a StrandSet, factors: &'a [Factor], rest: &'a [Block], first: usize) -> StrandRun<'a> {
+        let first = first * strands.nodes;
         StrandRun {
-            threads,
+            strands,
             first,
             factors: from(factors, first),
             rest: from(rest, first),
@@ -269,7 +269,7 @@ fn put_rows<S: Simd>(simd: S, taken: &[Block], nodes: usize, columns: &mut [Bloc
 /// One or two packs of strands that are being solved.
 #[derive(Clone, Copy)]
 struct StrandRun<'a> {
-    threads: &'a StrandSet,
+    strands: &'a StrandSet,
     /// Where the first pack begins among all nodes.
     first: usize,
     /// The matrix of these packs' bends.
@@ -287,20 +287,20 @@ impl StrandRun<'_> {
         pack: &mut StrandLanes,
         rows: &mut EliminationRows,
     ) {
-        let Self { threads, first, .. } = *self;
-        let count = threads.count;
+        let Self { strands, first, .. } = *self;
+        let count = strands.count;
         // What comes last is held best: stretch shows more than bending.
         match self.strand_material {
             StrandMaterial::Alike { stretch, bend } => {
                 if let Some(bend) = bend {
-                    pack.solve_bends::<S, F, DAMPED>(simd, count, &threads.bend[first..], bend);
+                    pack.solve_bends::<S, F, DAMPED>(simd, count, &strands.bend[first..], bend);
                 }
                 if stretch.acts() {
                     self.stretch::<S, F, _, DAMPED>(simd, pack, stretch, rows);
                 }
             }
-            StrandMaterial::SpringResponse(pull) => self.stretch::<S, F, _, false>(simd, pack, pull, rows),
-            StrandMaterial::GridView { stretch, rigidity } => {
+            StrandMaterial::LevelSprings(pull) => self.stretch::<S, F, _, false>(simd, pack, pull, rows),
+            StrandMaterial::SheetStrands { stretch, rigidity } => {
                 if let Some(rigidity) = rigidity {
                     if rigidity.c > 0.0 {
                         self.bend::<S, true>(simd, pack, rigidity, rows);
@@ -308,8 +308,8 @@ impl StrandRun<'_> {
                         self.bend::<S, false>(simd, pack, rigidity, rows);
                     }
                 }
-                let grading = stretch[threads.grain.index()];
-                let laws = GridStrandLaws { shares: &threads.shares[first..], grading };
+                let grading = stretch[strands.grain.index()];
+                let laws = GridStrandLaws { shares: &strands.shares[first..], grading };
                 self.stretch::<S, F, _, DAMPED>(simd, pack, laws, rows);
             }
         }
@@ -324,10 +324,10 @@ impl StrandRun<'_> {
         rigidity: Scaled,
         rows: &mut EliminationRows,
     ) {
-        let (count, stride) = (self.threads.count, pack.stride);
+        let (count, stride) = (self.strands.count, pack.stride);
         for first in (0..pack.position.len()).step_by(stride) {
             let bends = StrandBends {
-                weights: &self.threads.curvature[self.first + first..],
+                weights: &self.strands.curvature[self.first + first..],
                 rest: from(self.rest, first),
                 factors: &self.factors[first..],
                 rigidity,
@@ -354,11 +354,11 @@ impl StrandRun<'_> {
         laws: L,
         rows: &mut EliminationRows,
     ) {
-        let springs = StrandSprings { rest: &self.threads.stretch[self.first..], laws };
-        if self.threads.closed {
-            pack.solve::<S, F, L, DAMPED, true>(simd, self.threads.count, springs, rows);
+        let springs = StrandSprings { rest: &self.strands.stretch[self.first..], laws };
+        if self.strands.closed {
+            pack.solve::<S, F, L, DAMPED, true>(simd, self.strands.count, springs, rows);
         } else {
-            pack.solve::<S, F, L, DAMPED, false>(simd, self.threads.count, springs, rows);
+            pack.solve::<S, F, L, DAMPED, false>(simd, self.strands.count, springs, rows);
         }
     }
 }

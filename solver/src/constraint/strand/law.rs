@@ -173,7 +173,7 @@ pub(crate) trait StrandLaws<S: Simd, F: Wide<S>>: Copy {
 
     /// Factor on the rest lengths of what only pulls, 1 or more.
     #[inline(always)]
-    fn give(&self) -> f32 {
+    fn rest_scale(&self) -> f32 {
         1.0
     }
 }
@@ -195,7 +195,7 @@ impl<S: Simd, F: Wide<S>> StrandLaws<S, F> for Scaled {
 pub(crate) struct TensionOnly {
     pub spring: Scaled,
     /// Factor on the rest lengths, 1 or more.
-    pub give: f32,
+    pub rest_scale: f32,
 }
 
 impl<S: Simd, F: Wide<S>> StrandLaws<S, F> for TensionOnly {
@@ -209,8 +209,8 @@ impl<S: Simd, F: Wide<S>> StrandLaws<S, F> for TensionOnly {
     }
 
     #[inline(always)]
-    fn give(&self) -> f32 {
-        self.give
+    fn rest_scale(&self) -> f32 {
+        self.rest_scale
     }
 }
 

@@ -16,9 +16,9 @@ pub(crate) enum StrandMaterial {
         bend: Option<Scaled>,
     },
     /// Springs of a level, which only pull.
-    SpringResponse(TensionOnly),
+    LevelSprings(TensionOnly),
     /// The strands of a sheet.
-    GridView {
+    SheetStrands {
         /// By [`Grain::index`](crate::topology::Grain::index).
         stretch: [DirectionModuli; 2],
         /// B h² and its damping. None where nothing bends.
@@ -34,7 +34,7 @@ impl StrandMaterial {
                 let bend = Some(scaled(SpringKind::Bend)).filter(Scaled::acts);
                 Self::Alike { stretch: scaled(SpringKind::Structural), bend }
             }
-            Elasticity::Moduli(moduli) => Self::GridView {
+            Elasticity::Moduli(moduli) => Self::SheetStrands {
                 stretch: DirectionModuli::both(moduli, h),
                 rigidity: Some(Scaled::new(moduli.rigidity(), h)).filter(Scaled::acts),
             },
@@ -44,8 +44,10 @@ impl StrandMaterial {
     /// Whether it needs to know where the particles were before the substep.
     pub fn is_damped(&self) -> bool {
         let is_bend_damped = match self {
-            Self::Alike { bend, .. } | Self::GridView { rigidity: bend, .. } => bend.is_some_and(|bend| bend.c > 0.0),
-            Self::SpringResponse(_) => false,
+            Self::Alike { bend, .. } | Self::SheetStrands { rigidity: bend, .. } => {
+                bend.is_some_and(|bend| bend.c > 0.0)
+            }
+            Self::LevelSprings(_) => false,
         };
         is_bend_damped || self.is_stretch_damped()
     }
@@ -54,8 +56,8 @@ impl StrandMaterial {
     pub fn is_stretch_damped(&self) -> bool {
         match self {
             Self::Alike { stretch, bend } => stretch.c > 0.0 || bend.is_some_and(|bend| bend.c > 0.0),
-            Self::SpringResponse(_) => false,
-            Self::GridView { stretch: [warp, _], .. } => warp.damping > 0.0,
+            Self::LevelSprings(_) => false,
+            Self::SheetStrands { stretch: [warp, _], .. } => warp.damping > 0.0,
         }
     }
 }

@@ -28,15 +28,15 @@ impl StrandPackSolver<'_> {
         strand_scratch.make_room(strand_packs.iter().map(|strand_pack| strand_pack.nodes.len()).max().unwrap_or(0));
         let level = simd_level.level();
         if strand_material.is_damped() {
-            dispatch!(level, simd => solve_braids::<_, true>(simd, gathered, strand_packs, strand_material, strand_scratch));
+            dispatch!(level, simd => solve_packs::<_, true>(simd, gathered, strand_packs, strand_material, strand_scratch));
         } else {
-            dispatch!(level, simd => solve_braids::<_, false>(simd, gathered, strand_packs, strand_material, strand_scratch));
+            dispatch!(level, simd => solve_packs::<_, false>(simd, gathered, strand_packs, strand_material, strand_scratch));
         }
     }
 }
 
 #[inline(always)]
-fn solve_braids<S: Simd, const DAMPED: bool>(
+fn solve_packs<S: Simd, const DAMPED: bool>(
     simd: S,
     gathered: &mut GatheredParticles,
     strand_packs: &[StrandPack],
@@ -62,11 +62,11 @@ fn solve_braids<S: Simd, const DAMPED: bool>(
                     solve_stretch::<S, _, DAMPED>(simd, &mut pack, strand_pack, stretch, rows);
                 }
             }
-            StrandMaterial::GridView { stretch: gradings, .. } if !strand_pack.shares.is_empty() => {
+            StrandMaterial::SheetStrands { stretch: gradings, .. } if !strand_pack.shares.is_empty() => {
                 let laws = GatheredStrandLaws { shares: &strand_pack.shares, gradings };
                 solve_stretch::<S, _, DAMPED>(simd, &mut pack, strand_pack, laws, rows);
             }
-            StrandMaterial::GridView { .. } | StrandMaterial::SpringResponse(_) => {}
+            StrandMaterial::SheetStrands { .. } | StrandMaterial::LevelSprings(_) => {}
         }
         for (j, particles) in strand_pack.nodes.iter().enumerate() {
             gathered.put(particles, Vec3x8::load(simd, &position[j]), lane(simd, &inverse_mass[j]));

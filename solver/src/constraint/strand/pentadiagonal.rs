@@ -198,7 +198,7 @@ mod tests {
     impl Strands {
         /// Strands of which some nodes are fixed, and some don't bend.
         fn new(count: usize, curved: bool, rng: &mut Rng) -> Self {
-            let mut threads = Self {
+            let mut strands = Self {
                 position: vec![Block::default(); count],
                 previous: vec![Block::default(); count],
                 inverse_mass: vec![Lane::default(); count],
@@ -207,18 +207,18 @@ mod tests {
             };
             for (j, lane) in (0..count).flat_map(|j| (0..LANES).map(move |lane| (j, lane))) {
                 for axis in 0..3 {
-                    threads.position[j][axis][lane] = rng.f32() + if axis == 0 { j as f32 } else { 0.0 };
-                    threads.previous[j][axis][lane] = threads.position[j][axis][lane] + 0.1 * rng.f32();
+                    strands.position[j][axis][lane] = rng.f32() + if axis == 0 { j as f32 } else { 0.0 };
+                    strands.previous[j][axis][lane] = strands.position[j][axis][lane] + 0.1 * rng.f32();
                     if curved {
-                        threads.rest[j][axis][lane] = rng.f32() - 0.5;
+                        strands.rest[j][axis][lane] = rng.f32() - 0.5;
                     }
                 }
-                threads.inverse_mass[j][lane] = if rng.u32(0..5) == 0 { 0.0 } else { 0.2 + 2.0 * rng.f32() };
+                strands.inverse_mass[j][lane] = if rng.u32(0..5) == 0 { 0.0 } else { 0.2 + 2.0 * rng.f32() };
                 if j > 0 && j + 1 < count && rng.u32(0..6) > 0 {
-                    threads.weights[j].iter_mut().for_each(|weights| weights[lane] = 0.5 + rng.f32());
+                    strands.weights[j].iter_mut().for_each(|weights| weights[lane] = 0.5 + rng.f32());
                 }
             }
-            threads
+            strands
         }
 
         fn places(blocks: &[Block], lane: usize) -> Vec<DVec3> {
@@ -266,7 +266,7 @@ mod tests {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
-        fn bends_of_a_thread_are_solved_as_by_their_whole_matrix(
+        fn bends_of_a_strand_are_solved_as_by_their_whole_matrix(
             seed in any::<u64>(),
             count in 3_usize..24,
             stiffness in prop_oneof![Just(0.001_f32), 0.01_f32..10.0],
@@ -274,13 +274,13 @@ mod tests {
             curved in any::<bool>(),
             simd_level in prop_oneof![Just(SimdLevel::Best), Just(SimdLevel::Baseline)],
         ) {
-            let mut threads = Strands::new(count, curved, &mut Rng::with_seed(seed));
+            let mut strands = Strands::new(count, curved, &mut Rng::with_seed(seed));
             let rigidity = Scaled { k: stiffness, c: damping };
-            let expected: Vec<_> = (0..LANES).map(|lane| threads.expected(lane, rigidity)).collect();
+            let expected: Vec<_> = (0..LANES).map(|lane| strands.expected(lane, rigidity)).collect();
             let mut rows = EliminationRows::default();
             rows.make_room(count);
             let mut factors = vec![Factor::default(); count];
-            let Strands { position, previous, inverse_mass, weights, rest } = &mut threads;
+            let Strands { position, previous, inverse_mass, weights, rest } = &mut strands;
             dispatch!(simd_level.level(), simd => {
                 factorize(simd, count, inverse_mass, weights, rigidity, &mut factors);
             });
@@ -297,8 +297,8 @@ mod tests {
                     pack.solve_curvature::<_, true, true>(simd, count, bends, &mut rows)),
             }
             for (lane, expected) in expected.iter().enumerate() {
-                for (found, expected) in Strands::places(&threads.position, lane).iter().zip(expected) {
-                    prop_assert!(found.distance(*expected) < 5e-3, "thread {lane}: {found} for {expected}");
+                for (found, expected) in Strands::places(&strands.position, lane).iter().zip(expected) {
+                    prop_assert!(found.distance(*expected) < 5e-3, "strand {lane}: {found} for {expected}");
                 }
             }
         }

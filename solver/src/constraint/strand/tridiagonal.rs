@@ -289,7 +289,7 @@ impl<L> StrandSprings<'_, L> {
     {
         let mut rest = F::load(simd, self.rest, at, stride);
         if L::ONLY_PULLS {
-            rest *= self.laws.give();
+            rest *= self.laws.rest_scale();
         }
         let longer_than = if L::ONLY_PULLS { rest } else { F::splat(simd, SHORTEST) };
         EliminationRow::new::<S, DAMPED>(simd, [here, next], [rest, longer_than], self.laws.at(simd, at, stride))

@@ -60,11 +60,11 @@ pub(crate) struct BendSolver {
 }
 
 impl BendSolver {
-    /// How a material bends in substeps of `h` seconds, perhaps without what is `woven`; none where nothing does.
-    pub fn new(topology: &Topology, woven: bool, material: &Material, lanes: &Lanes, h: f32) -> Option<Self> {
+    /// How a material bends in substeps of `h` seconds, with or without what is on strands; none where nothing does.
+    pub fn new(topology: &Topology, with_strands: bool, material: &Material, lanes: &Lanes, h: f32) -> Option<Self> {
         let moduli = material.moduli()?;
         let (k, delay) = (moduli.bending * h * h, moduli.bend_damping / h);
-        if k == 0.0 || !topology.bend_batches.iter().any(|batch| woven || !batch.woven) {
+        if k == 0.0 || !topology.bend_batches.iter().any(|batch| with_strands || !batch.on_strand) {
             return None;
         }
         let framed = topology.is_curved || delay > 0.0;
@@ -84,19 +84,19 @@ fn lightness(topology: &Topology, material: &Material, lanes: &Lanes) -> f32 {
     ((0..).zip(&topology.areas).fold(0.0, heavier) * material.density).max(1.0)
 }
 
-/// Solves all bends, or without those that are `woven`.
+/// Solves all bends, or without those on strands.
 pub(crate) fn solve(
     gathered: &mut GatheredParticles,
     ways: &mut ChebyshevBuffers,
     topology: &Topology,
-    woven: bool,
+    with_strands: bool,
     bending: BendSolver,
     simd_level: SimdLevel,
 ) {
     ways.begin(&gathered.now);
     let level = simd_level.level();
     for shares in bending.stages.shares() {
-        for batch in topology.bend_batches.iter().filter(|batch| woven || !batch.woven) {
+        for batch in topology.bend_batches.iter().filter(|batch| with_strands || !batch.on_strand) {
             let bends = &topology.bends[batch.range.clone()];
             if bending.framed {
                 dispatch!(level, simd => pull_batch::<_, true>(simd, gathered, &mut ways.pull, bends, bending));
@@ -104,6 +104,6 @@ pub(crate) fn solve(
                 dispatch!(level, simd => pull_batch::<_, false>(simd, gathered, &mut ways.pull, bends, bending));
             }
         }
-        dispatch!(level, simd => ways.go_on(simd, &mut gathered.now, shares));
+        dispatch!(level, simd => ways.advance(simd, &mut gathered.now, shares));
     }
 }

@@ -62,7 +62,7 @@ pub(crate) enum BatchLaw {
     /// All are alike.
     Alike(Scaled),
     /// Each has its share of a sheet.
-    GridView([DirectionModuli; 2]),
+    Sheet([DirectionModuli; 2]),
 }
 
 impl BatchLaw {
@@ -74,8 +74,8 @@ impl BatchLaw {
             }
             Elasticity::Moduli(moduli) => batch.carries.then(|| {
                 let gradings = DirectionModuli::both(moduli, h);
-                let is_thread = batch.kind == SpringKind::Structural;
-                Self::GridView(if is_thread { gradings } else { gradings.map(DirectionModuli::linear) })
+                let is_structural = batch.kind == SpringKind::Structural;
+                Self::Sheet(if is_structural { gradings } else { gradings.map(DirectionModuli::linear) })
             }),
         }
     }
@@ -84,7 +84,7 @@ impl BatchLaw {
     pub fn is_damped(&self) -> bool {
         match self {
             Self::Alike(constants) => constants.c > 0.0,
-            Self::GridView([warp, _]) => warp.damping > 0.0,
+            Self::Sheet([warp, _]) => warp.damping > 0.0,
         }
     }
 }
@@ -99,10 +99,10 @@ pub(crate) fn solve(gathered: &mut GatheredParticles, springs: &[Spring], law: B
         (BatchLaw::Alike(law), true) => {
             dispatch!(level, simd => solve_batch::<_, _, true>(simd, gathered, springs, law))
         }
-        (BatchLaw::GridView(law), false) => {
+        (BatchLaw::Sheet(law), false) => {
             dispatch!(level, simd => solve_batch::<_, _, false>(simd, gathered, springs, law))
         }
-        (BatchLaw::GridView(law), true) => {
+        (BatchLaw::Sheet(law), true) => {
             dispatch!(level, simd => solve_batch::<_, _, true>(simd, gathered, springs, law))
         }
     }
@@ -114,7 +114,7 @@ pub(crate) fn solve_few(lanes: &mut Lanes, springs: &[Spring], law: BatchLaw, si
     let level = simd_level.level();
     match law {
         BatchLaw::Alike(law) => dispatch!(level, simd => solve_scattered(simd, lanes, springs, law)),
-        BatchLaw::GridView(law) => dispatch!(level, simd => solve_scattered(simd, lanes, springs, law)),
+        BatchLaw::Sheet(law) => dispatch!(level, simd => solve_scattered(simd, lanes, springs, law)),
     }
 }
 

@@ -8,7 +8,7 @@ use crate::input::Body;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CombinedBody {
     /// Number of pins, and how far the farthest is from the body's centre of mass, m.
-    pub pin_motions: f32,
+    pub pin_count: f32,
     pub reach: f32,
     /// Inverse mass of all, 1/kg.
     pub inverse_mass: f32,
@@ -33,11 +33,11 @@ impl CombinedBody {
         // (I + added)^-1, where only I^-1 is known and may have no inverse: I^-1 (1 + added I^-1)^-1.
         let part = (Mat3A::IDENTITY + added * body.inverse_inertia).inverse();
         let reach = masses().map(|(arm, _)| arm.length()).fold(0.0, f32::max);
-        Self { pin_motions: count, reach, inverse_mass, inverse_inertia: body.inverse_inertia * part, offset, part }
+        Self { pin_count: count, reach, inverse_mass, inverse_inertia: body.inverse_inertia * part, offset, part }
     }
 
     /// The most that a push of 1 N s at `arm` (m) from the body's centre of mass gives it of velocity there, m/s.
-    pub fn give(&self, arm: Vec3A) -> f32 {
+    pub fn effective_inverse_mass(&self, arm: Vec3A) -> f32 {
         let arm = arm - self.offset;
         let turned = |axis: Vec3A| (self.inverse_inertia * arm.cross(axis)).cross(arm).length_squared();
         // No axis of a matrix gives more than all together.
@@ -63,10 +63,10 @@ mod tests {
     #[test]
     fn a_push_gives_what_the_body_has_there() {
         let load = CombinedBody::new(&ball(), || [].into_iter());
-        assert_eq!(load.give(Vec3A::ZERO), 0.5);
+        assert_eq!(load.effective_inverse_mass(Vec3A::ZERO), 0.5);
         // Across the arm: 1 / M + r² / I.
         let across = 0.5 + 4.0 * 0.09;
-        let given = load.give(Vec3A::X * 0.3);
+        let given = load.effective_inverse_mass(Vec3A::X * 0.3);
         assert!((across..1.5 * across).contains(&given), "{given}");
     }
 

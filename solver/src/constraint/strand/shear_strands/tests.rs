@@ -68,7 +68,7 @@ impl Cells {
         (-rows..columns + rows).map(strand).collect()
     }
 
-    fn thread(&self, strand: &[(usize, usize)], spring: [f32; 2]) -> Strand {
+    fn strand(&self, strand: &[(usize, usize)], spring: [f32; 2]) -> Strand {
         let place = |blocks: &[Block], (row, column): (usize, usize)| {
             let (at, lane) = self.slot(row, column);
             Vec3A::from_array(blocks[at].map(|lanes| lanes[lane])).as_dvec3()
@@ -129,10 +129,10 @@ proptest! {
         let spring = [stiffness, damping];
         let mut cells = Cells::new([rows, columns, rows + more_rows], rising, &mut Rng::with_seed(seed));
         let strands = cells.strands();
-        let before: Vec<Strand> = strands.iter().map(|strand| cells.thread(strand, spring)).collect();
+        let before: Vec<Strand> = strands.iter().map(|strand| cells.strand(strand, spring)).collect();
         cells.solve(spring, simd_level);
         for (strand, before) in strands.iter().zip(before) {
-            let found: Vec<DVec3> = cells.thread(strand, spring).position;
+            let found: Vec<DVec3> = cells.strand(strand, spring).position;
             for (((found, expected), start), at) in found.iter().zip(before.solved()).zip(&before.position).zip(strand) {
                 let off = found.distance(expected) / start.distance(expected).max(1.0);
                 prop_assert!(off < 5e-3, "{at:?}: {found} for {expected}");

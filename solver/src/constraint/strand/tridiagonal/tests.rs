@@ -25,7 +25,7 @@ impl Strands {
     /// `taut`.
     fn new(count: usize, taut: bool, rng: &mut Rng) -> Self {
         let all = 2 * count;
-        let mut threads = Self {
+        let mut strands = Self {
             count,
             position: vec![Block::default(); all],
             previous: vec![Block::default(); all],
@@ -38,22 +38,22 @@ impl Strands {
             let along = (at % count) as f32 / count as f32;
             let place = [count as f32 * along * (1.0 - along), along * count as f32 * (0.5 - along), 0.0];
             for (axis, place) in place.into_iter().enumerate() {
-                threads.position[at][axis][lane] = place + noise();
-                threads.previous[at][axis][lane] = threads.position[at][axis][lane] + 0.1 * noise();
+                strands.position[at][axis][lane] = place + noise();
+                strands.previous[at][axis][lane] = strands.position[at][axis][lane] + 0.1 * noise();
             }
-            threads.inverse_mass[at][lane] = if rng.u32(0..5) == 0 { 0.0 } else { 0.2 + 2.0 * rng.f32() };
+            strands.inverse_mass[at][lane] = if rng.u32(0..5) == 0 { 0.0 } else { 0.2 + 2.0 * rng.f32() };
             let is_there = taut || rng.u32(0..8) > 0;
-            threads.rest[at][lane] = match (is_there, taut) {
+            strands.rest[at][lane] = match (is_there, taut) {
                 (false, _) => 0.0,
                 (true, false) => 0.5 + rng.f32(),
                 (true, true) => 0.01,
             };
         }
-        threads
+        strands
     }
 
     /// One of them, with all springs alike.
-    fn thread(&self, number: usize, closed: bool, spring: Scaled) -> Strand {
+    fn strand(&self, number: usize, closed: bool, spring: Scaled) -> Strand {
         let (nodes, lane) = (number / LANES * self.count..(number / LANES + 1) * self.count, number % LANES);
         let places = |blocks: &[Block]| -> Vec<DVec3> {
             blocks[nodes.clone()].iter().map(|[x, y, z]| Vec3A::new(x[lane], y[lane], z[lane]).as_dvec3()).collect()
@@ -117,7 +117,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_thread_is_solved_as_by_its_whole_matrix(
+    fn a_strand_is_solved_as_by_its_whole_matrix(
         seed in any::<u64>(),
         count in 3_usize..24,
         stiffness in prop_oneof![Just(0.01_f32), 0.1_f32..10.0, Just(100.0)],
@@ -126,42 +126,42 @@ proptest! {
         closed in any::<bool>(),
         simd_level in prop_oneof![Just(SimdLevel::Best), Just(SimdLevel::Baseline)],
     ) {
-        let mut threads = Strands::new(count, false, &mut Rng::with_seed(seed));
+        let mut strands = Strands::new(count, false, &mut Rng::with_seed(seed));
         let spring = Scaled { k: stiffness, c: damping };
         let law = if damping > 0.0 { Given::Damped(spring) } else { Given::Bare(spring) };
         let all = if both { 2 * LANES } else { LANES };
-        let before: Vec<Strand> = (0..all).map(|i| threads.thread(i, closed, spring)).collect();
-        threads.solve(law, both, closed, simd_level);
+        let before: Vec<Strand> = (0..all).map(|i| strands.strand(i, closed, spring)).collect();
+        strands.solve(law, both, closed, simd_level);
         for (i, before) in before.into_iter().enumerate() {
-            let off = error(&threads.thread(i, closed, spring).position, &before.solved(), &before);
-            prop_assert!(off < 5e-3, "thread {i}: {off}");
+            let off = error(&strands.strand(i, closed, spring).position, &before.solved(), &before);
+            prop_assert!(off < 5e-3, "strand {i}: {off}");
         }
     }
 
     #[test]
-    fn a_thread_that_only_pulls_is_solved_as_by_its_whole_matrix(
+    fn a_strand_that_only_pulls_is_solved_as_by_its_whole_matrix(
         seed in any::<u64>(),
         count in 3_usize..24,
         stiffness in 0.1_f32..100.0,
-        give in 1.0_f32..1.5,
+        rest_scale in 1.0_f32..1.5,
         closed in any::<bool>(),
     ) {
-        let mut threads = Strands::new(count, true, &mut Rng::with_seed(seed));
+        let mut strands = Strands::new(count, true, &mut Rng::with_seed(seed));
         let spring = Scaled { k: stiffness, c: 0.0 };
         let before: Vec<Strand> = (0..2 * LANES)
             .map(|i| {
-                let mut thread = threads.thread(i, closed, spring);
-                thread.rest.iter_mut().for_each(|rest| *rest *= f64::from(give));
-                thread
+                let mut strand = strands.strand(i, closed, spring);
+                strand.rest.iter_mut().for_each(|rest| *rest *= f64::from(rest_scale));
+                strand
             })
             .collect();
-        threads.solve(Given::TensionOnly(TensionOnly { spring, give }), true, closed, SimdLevel::Best);
+        strands.solve(Given::TensionOnly(TensionOnly { spring, rest_scale }), true, closed, SimdLevel::Best);
         for (i, before) in before.into_iter().enumerate() {
             let pushes = before.pushes();
             // What would push is left out, and that is another system.
             if pushes.iter().all(|&push| push < 0.0) {
-                let off = error(&threads.thread(i, closed, spring).position, &before.pushed(&pushes), &before);
-                prop_assert!(off < 5e-3, "thread {i}: {off}");
+                let off = error(&strands.strand(i, closed, spring).position, &before.pushed(&pushes), &before);
+                prop_assert!(off < 5e-3, "strand {i}: {off}");
             }
         }
     }

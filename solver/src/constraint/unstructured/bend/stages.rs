@@ -85,7 +85,7 @@ impl ChebyshevBuffers {
 
     /// Ends a stage: the ways so far, those before, and what pulls, by their shares.
     #[inline(always)]
-    pub fn go_on<S: Simd>(&mut self, _: S, now: &mut [[f32; 4]], [way_share, earlier_share, pull_share]: [f32; 3]) {
+    pub fn advance<S: Simd>(&mut self, _: S, now: &mut [[f32; 4]], [way_share, earlier_share, pull_share]: [f32; 3]) {
         let Self { start, way, earlier, pull } = self;
         let all = now.iter_mut().zip(start).zip(way).zip(earlier).zip(pull);
         for ((((now, start), way), earlier), pull) in all {
@@ -115,7 +115,7 @@ mod tests {
             // Half of the rate, as the inverse mass is two.
             ways.pull[0][0] += 0.5 * rate * now[0][0];
             let level = crate::layout::simd::SimdLevel::Baseline.level();
-            fearless_simd::dispatch!(level, simd => ways.go_on(simd, &mut now, shares));
+            fearless_simd::dispatch!(level, simd => ways.advance(simd, &mut now, shares));
         }
         assert_eq!(now[0][3], 2.0);
         now[0][0]

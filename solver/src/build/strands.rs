@@ -1,4 +1,4 @@
-//! Finds the threads of a mesh that is regular, but no rectangle: at each particle, springs in line go on as one.
+//! Finds the strands of a mesh that is regular, but no rectangle: at each particle, springs in line go on as one.
 //!
 //! ```text
 //!     \ /
@@ -12,18 +12,18 @@ use super::edges::Edges;
 use crate::{Spring, SpringKind};
 
 /// Largest cosine between two springs that go on as one: a turn of 50°. A tube of eight particles around keeps its rings;
-/// the zigzag at the border of equilateral triangles, which turns by 60°, doesn't reflect threads back into the sheet,
+/// the zigzag at the border of equilateral triangles, which turns by 60°, doesn't reflect strands back into the sheet,
 /// where they would cross those of every direction.
 const STRAIGHT: f32 = -0.64;
 
-/// A particle with more springs than this is a hub. Threads that cross there couldn't be solved side by side.
+/// A particle with more springs than this is a hub. Strands that cross there couldn't be solved side by side.
 const MOST_ARMS: usize = 8;
 
-/// How many springs there have to be for each time that a thread breaks off inside the mesh.
+/// How many springs there have to be for each time that a strand breaks off inside the mesh.
 ///
-/// Threads pay where they are straight, and where they are crooked, they break. Measured on equilateral triangles and on
+/// Strands pay where they are straight, and where they are crooked, they break. Measured on equilateral triangles and on
 /// an L of quads, about 64 particles along a side, whose places were moved at random by so much of a cell: 8 substeps with
-/// threads over the same with all springs in colours (`lab hang --jitter`; the strain that all but one in a hundred
+/// strands over the same with all springs in colours (`lab hang --jitter`; the strain that all but one in a hundred
 /// springs stay below, the mean strain and the time).
 ///
 /// | moved by | springs a break | strain | mean | time |
@@ -38,16 +38,16 @@ const LEAST_SPRINGS_A_BREAK: usize = 100;
 
 /// Springs end to end that pass each particle once.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Thread {
+pub(super) struct Strand {
     pub particles: Vec<u32>,
     /// Numbers of the springs from each particle to the next; in a ring, at the end to the first.
     pub springs: Vec<u32>,
     pub closed: bool,
 }
 
-/// The threads that structural `springs` between particles at `rest` (m) form. None at all where they break too often
+/// The strands that structural `springs` between particles at `rest` (m) form. None at all where they break too often
 /// to pay.
-pub(super) fn find(rest: &[Vec3], edges: &Edges, springs: &[(SpringKind, Spring)]) -> Vec<Thread> {
+pub(super) fn find(rest: &[Vec3], edges: &Edges, springs: &[(SpringKind, Spring)]) -> Vec<Strand> {
     let arms = arms(rest, springs);
     let may_end = where_threads_may_end(edges, springs, &arms);
     let net = Net::new(springs, &arms);
@@ -78,7 +78,7 @@ fn arms(rest: &[Vec3], springs: &[(SpringKind, Spring)]) -> Vec<Vec<Arm>> {
     arms
 }
 
-/// Whether a thread that ends at a particle isn't broken: at the border, at hubs and next to them.
+/// Whether a strand that ends at a particle isn't broken: at the border, at hubs and next to them.
 fn where_threads_may_end(edges: &Edges, springs: &[(SpringKind, Spring)], arms: &[Vec<Arm>]) -> Vec<bool> {
     let mut may_end: Vec<bool> = arms.iter().map(|arms| arms.len() > MOST_ARMS).collect();
     for arm in arms.iter().filter(|arms| arms.len() > MOST_ARMS).flatten() {
@@ -95,21 +95,21 @@ fn where_threads_may_end(edges: &Edges, springs: &[(SpringKind, Spring)], arms: 
 /// Springs and how they go on.
 struct Net<'a> {
     springs: &'a [(SpringKind, Spring)],
-    /// Whether each spring is on a thread.
-    is_on_thread: Vec<bool>,
+    /// Whether each spring is on a strand.
+    is_on_strand: Vec<bool>,
     /// The spring that goes on from either end of each.
     onward: Vec<[Option<u32>; 2]>,
 }
 
 impl<'a> Net<'a> {
     fn new(springs: &'a [(SpringKind, Spring)], arms: &[Vec<Arm>]) -> Self {
-        let mut is_on_thread = vec![false; springs.len()];
-        arms.iter().flatten().for_each(|arm| is_on_thread[arm.spring as usize] = true);
+        let mut is_on_strand = vec![false; springs.len()];
+        arms.iter().flatten().for_each(|arm| is_on_strand[arm.spring as usize] = true);
         let hubs = arms.iter().filter(|arms| arms.len() > MOST_ARMS);
-        hubs.flatten().for_each(|arm| is_on_thread[arm.spring as usize] = false);
+        hubs.flatten().for_each(|arm| is_on_strand[arm.spring as usize] = false);
         let mut onward = vec![[None; 2]; springs.len()];
         for arms in arms.iter().filter(|arms| arms.len() <= MOST_ARMS) {
-            let arms: Vec<Arm> = arms.iter().copied().filter(|arm| is_on_thread[arm.spring as usize]).collect();
+            let arms: Vec<Arm> = arms.iter().copied().filter(|arm| is_on_strand[arm.spring as usize]).collect();
             let pairs = arms.iter().enumerate().flat_map(|(i, p)| arms[i + 1..].iter().map(move |q| (p, q)));
             let mut pairs: Vec<_> = pairs.map(|(p, q)| (p.along.dot(q.along), p, q)).collect();
             pairs.retain(|&(cosine, ..)| cosine <= STRAIGHT);
@@ -122,15 +122,15 @@ impl<'a> Net<'a> {
                 }
             }
         }
-        Self { springs, is_on_thread, onward }
+        Self { springs, is_on_strand, onward }
     }
 
-    /// The springs on threads.
+    /// The springs on strands.
     fn springs(&self) -> impl Iterator<Item = u32> {
-        (0..).zip(&self.is_on_thread).filter(|(_, is_on_thread)| **is_on_thread).map(|(spring, _)| spring)
+        (0..).zip(&self.is_on_strand).filter(|(_, is_on_strand)| **is_on_strand).map(|(spring, _)| spring)
     }
 
-    /// Number of springs, and how often threads break off where they shouldn't: each break has two ends.
+    /// Number of springs, and how often strands break off where they shouldn't: each break has two ends.
     fn count_breaks(&self, may_end: &[bool]) -> (usize, usize) {
         let is_broken = |spring: u32| {
             let Spring { a, b, .. } = self.springs[spring as usize].1;
@@ -147,21 +147,21 @@ impl<'a> Net<'a> {
         (to, self.onward[spring as usize][end])
     }
 
-    /// All threads between `count` particles.
-    fn trace(&self, count: usize) -> Vec<Thread> {
-        let mut threads = Vec::new();
+    /// All strands between `count` particles.
+    fn trace(&self, count: usize) -> Vec<Strand> {
+        let mut strands = Vec::new();
         let mut is_traced = vec![false; self.springs.len()];
-        // The latest thread that passed each particle, counted from one.
+        // The latest strand that passed each particle, counted from one.
         let mut passed_by = vec![0; count];
         for spring in self.springs() {
             if !is_traced[spring as usize] {
-                self.trace_from(self.start(spring), &mut is_traced, &mut passed_by, &mut threads);
+                self.trace_from(self.start(spring), &mut is_traced, &mut passed_by, &mut strands);
             }
         }
-        threads
+        strands
     }
 
-    /// Where the thread of a spring begins: a spring and the end to start from. In a ring, next to where it was asked.
+    /// Where the strand of a spring begins: a spring and the end to start from. In a ring, next to where it was asked.
     fn start(&self, first: u32) -> (u32, u32) {
         let mut at = (first, self.springs[first as usize].1.b);
         loop {
@@ -173,39 +173,39 @@ impl<'a> Net<'a> {
         }
     }
 
-    /// Follows a thread to its end. One that comes back to a particle is cut there; one that closes is a ring.
+    /// Follows a strand to its end. One that comes back to a particle is cut there; one that closes is a ring.
     fn trace_from(
         &self,
         start: (u32, u32),
         is_traced: &mut [bool],
         passed_by: &mut [usize],
-        threads: &mut Vec<Thread>,
+        strands: &mut Vec<Strand>,
     ) {
         let mut at = start;
-        let mut thread = Thread { particles: vec![start.1], ..Thread::default() };
-        passed_by[start.1 as usize] = threads.len() + 1;
+        let mut strand = Strand { particles: vec![start.1], ..Strand::default() };
+        passed_by[start.1 as usize] = strands.len() + 1;
         loop {
             let (spring, from) = at;
             let (to, next) = self.across(at);
             is_traced[spring as usize] = true;
-            let is_whole = thread.particles[0] == start.1;
-            thread.closed = is_whole && (Some(start.0), start.1) == (next, to);
-            if !thread.closed {
-                if passed_by[to as usize] == threads.len() + 1 {
-                    threads.push(core::mem::take(&mut thread));
-                    thread.particles.push(from);
-                    passed_by[from as usize] = threads.len() + 1;
+            let is_whole = strand.particles[0] == start.1;
+            strand.closed = is_whole && (Some(start.0), start.1) == (next, to);
+            if !strand.closed {
+                if passed_by[to as usize] == strands.len() + 1 {
+                    strands.push(core::mem::take(&mut strand));
+                    strand.particles.push(from);
+                    passed_by[from as usize] = strands.len() + 1;
                 }
-                thread.particles.push(to);
-                passed_by[to as usize] = threads.len() + 1;
+                strand.particles.push(to);
+                passed_by[to as usize] = strands.len() + 1;
             }
-            thread.springs.push(spring);
+            strand.springs.push(spring);
             match next {
                 Some(next) if !is_traced[next as usize] => at = (next, to),
                 _ => break,
             }
         }
-        threads.push(thread);
+        strands.push(strand);
     }
 }
 
@@ -214,7 +214,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_thread_that_crosses_itself_is_cut_there() {
+    fn a_strand_that_crosses_itself_is_cut_there() {
         // To the right, around in three quarters of a circle, and up across where it came from.
         let angle = |i: i32| i as f32 / 90.0 * 1.5 * core::f32::consts::PI;
         let around = |i: i32| Vec3::new(bevy_math::ops::sin(angle(i)), bevy_math::ops::cos(angle(i)) - 1.0, 0.0);
@@ -233,12 +233,12 @@ mod tests {
             )
         };
         let springs: Vec<_> = path.array_windows().map(spring).collect();
-        let threads = find(&rest, &Edges::new(rest.len(), &[]), &springs);
-        assert_eq!(threads.len(), 2);
-        assert_eq!(threads.iter().map(|thread| thread.springs.len()).sum::<usize>(), springs.len());
-        for thread in threads {
-            assert_eq!(thread.particles.len(), thread.springs.len() + 1);
-            let mut particles = thread.particles;
+        let strands = find(&rest, &Edges::new(rest.len(), &[]), &springs);
+        assert_eq!(strands.len(), 2);
+        assert_eq!(strands.iter().map(|strand| strand.springs.len()).sum::<usize>(), springs.len());
+        for strand in strands {
+            assert_eq!(strand.particles.len(), strand.springs.len() + 1);
+            let mut particles = strand.particles;
             particles.sort_unstable();
             assert!(particles.array_windows().all(|[a, b]| a < b), "it comes by a particle twice");
         }

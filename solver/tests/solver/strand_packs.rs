@@ -1,4 +1,4 @@
-//! Regular meshes that are no rectangle get threads from edge to edge, and others none.
+//! Regular meshes that are no rectangle get strands from edge to edge, and others none.
 
 use std::collections::BTreeSet;
 
@@ -73,19 +73,19 @@ fn disc(spokes: u32, rings: u32) -> SourceMesh {
 
 type Key = (u32, u32, u32);
 
-/// The springs of all braids: along the threads, and across two springs of one.
-fn braided(topology: &Topology) -> [BTreeSet<Key>; 2] {
+/// The springs of all packs: along the strands, and across two springs of one.
+fn packed(topology: &Topology) -> [BTreeSet<Key>; 2] {
     let nobody = topology.particle_count() as u32;
     let [mut along, mut across] = [BTreeSet::new(), BTreeSet::new()];
-    for braid in &topology.strand_packs {
-        let count = braid.nodes.len();
+    for pack in &topology.strand_packs {
+        let count = pack.nodes.len();
         for lane in 0..8 {
-            let particle = |j: usize| braid.nodes[j % count][lane];
-            let lengths = [(1, &braid.stretch, &mut along), (2, &braid.bend, &mut across)];
+            let particle = |j: usize| pack.nodes[j % count][lane];
+            let lengths = [(1, &pack.stretch, &mut along), (2, &pack.bend, &mut across)];
             for (steps, lengths, springs) in lengths {
                 for (j, rest) in lengths.iter().enumerate().filter(|(_, rest)| rest[lane] > 0.0) {
                     let (a, b) = (particle(j), particle(j + steps));
-                    assert!(j + steps < count || braid.closed && steps == 1, "only a ring goes on after its end");
+                    assert!(j + steps < count || pack.closed && steps == 1, "only a ring goes on after its end");
                     assert!(a < nobody && b < nobody, "a spring to nobody");
                     assert!(springs.insert((a.min(b), a.max(b), rest[lane].to_bits())), "{a} to {b} twice");
                 }
@@ -95,29 +95,29 @@ fn braided(topology: &Topology) -> [BTreeSet<Key>; 2] {
     [along, across]
 }
 
-fn keys(topology: &Topology, kind: SpringKind, woven: bool) -> BTreeSet<Key> {
-    let batches = topology.batches.iter().filter(|batch| batch.kind == kind && batch.woven == woven);
+fn keys(topology: &Topology, kind: SpringKind, on_strand: bool) -> BTreeSet<Key> {
+    let batches = topology.batches.iter().filter(|batch| batch.kind == kind && batch.on_strand == on_strand);
     let springs = batches.flat_map(|batch| &topology.springs[batch.range.clone()]);
     springs.map(|spring| (spring.a.min(spring.b), spring.a.max(spring.b), spring.rest.to_bits())).collect()
 }
 
-/// Braids and batches that aren't woven have every spring once, and no two threads of a braid meet.
+/// Packs, and batches that aren't on strands, have every spring once, and no two strands of a pack meet.
 #[track_caller]
 pub fn assert_shared_out(topology: &Topology) {
-    let [along, across] = braided(topology);
+    let [along, across] = packed(topology);
     assert_eq!(along, keys(topology, SpringKind::Structural, true));
     assert_eq!(across, keys(topology, SpringKind::Bend, true));
     assert!(keys(topology, SpringKind::Shear, true).is_empty());
     let nobody = topology.particle_count() as u32;
-    for braid in &topology.strand_packs {
+    for pack in &topology.strand_packs {
         let mut seen = BTreeSet::new();
-        let particles = braid.nodes.as_flattened().iter().filter(|&&particle| particle != nobody);
-        assert!(particles.copied().all(|particle| seen.insert(particle)), "threads of a braid meet");
-        assert_eq!(braid.nodes.len(), braid.stretch.len());
+        let particles = pack.nodes.as_flattened().iter().filter(|&&particle| particle != nobody);
+        assert!(particles.copied().all(|particle| seen.insert(particle)), "strands of a pack meet");
+        assert_eq!(pack.nodes.len(), pack.stretch.len());
     }
 }
 
-fn thread_count(topology: &Topology) -> usize {
+fn strand_count(topology: &Topology) -> usize {
     match topology.structure() {
         MeshStructure::Strands { count } => count,
         other => panic!("{other}"),
@@ -125,7 +125,7 @@ fn thread_count(topology: &Topology) -> usize {
 }
 
 #[test]
-fn regular_meshes_have_all_their_structural_springs_on_threads() {
+fn regular_meshes_have_all_their_structural_springs_on_strands() {
     let cross = |row: u32, column: u32| (8..16).contains(&row) || (8..16).contains(&column);
     let holed = |row: u32, column: u32| !((8..12).contains(&row) && (6..14).contains(&column));
     let cases = [
@@ -135,17 +135,17 @@ fn regular_meshes_have_all_their_structural_springs_on_threads() {
         ("with a hole", quads(25, holed), 25 + 25 + 3 + 7),
         ("a sleeve", sleeve(24, 20), 20 + 2 * 24),
     ];
-    for (name, mesh, threads) in cases {
+    for (name, mesh, strands) in cases {
         let topology = topology(mesh);
         println!("{name}: {}", topology.structure());
         assert_shared_out(&topology);
         assert_eq!(keys(&topology, SpringKind::Structural, false).len(), 0, "{name}");
-        assert_eq!(thread_count(&topology), threads, "{name}");
+        assert_eq!(strand_count(&topology), strands, "{name}");
     }
 }
 
 #[test]
-fn threads_of_quads_bend_and_those_of_triangles_bend_across_their_edges() {
+fn strands_of_quads_bend_and_those_of_triangles_bend_across_their_edges() {
     let quads = topology(ell(24));
     assert_eq!(keys(&quads, SpringKind::Bend, false).len(), 0);
     let triangles = topology(hexagons(20));
@@ -155,10 +155,10 @@ fn threads_of_quads_bend_and_those_of_triangles_bend_across_their_edges() {
 #[test]
 fn rings_are_closed() {
     let topology = topology(sleeve(24, 20));
-    let rings: Vec<_> = topology.strand_packs.iter().filter(|braid| braid.closed).collect();
-    assert_eq!(rings.iter().map(|braid| braid.thread_count()).sum::<usize>(), 20);
+    let rings: Vec<_> = topology.strand_packs.iter().filter(|pack| pack.closed).collect();
+    assert_eq!(rings.iter().map(|pack| pack.strand_count()).sum::<usize>(), 20);
     for ring in rings {
-        assert_eq!((ring.nodes.len(), ring.spring_count()), (24, 24 * ring.thread_count()));
+        assert_eq!((ring.nodes.len(), ring.spring_count()), (24, 24 * ring.strand_count()));
     }
 }
 
@@ -166,14 +166,14 @@ fn rings_are_closed() {
 fn spokes_end_before_their_hub() {
     let topology = topology(disc(32, 16));
     assert_shared_out(&topology);
-    assert_eq!(thread_count(&topology), 16 + 32);
+    assert_eq!(strand_count(&topology), 16 + 32);
     assert_eq!(keys(&topology, SpringKind::Structural, false).len(), 32);
 }
 
 #[test]
-fn a_mesh_in_any_order_has_the_same_threads() {
+fn a_mesh_in_any_order_has_the_same_strands() {
     for (name, mesh) in [("triangles", hexagons(20)), ("an L", ell(24))] {
-        let expected = thread_count(&topology(mesh.clone()));
+        let expected = strand_count(&topology(mesh.clone()));
         for seed in 0..5 {
             let mut rng = Rng::with_seed(seed);
             let place = |vertex: u32| mesh.positions[vertex as usize];
@@ -182,13 +182,13 @@ fn a_mesh_in_any_order_has_the_same_threads() {
             let corners = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect::<Vec<_>>();
             let topology = topology(assemble(triangles.as_flattened().to_vec(), &corners));
             assert_shared_out(&topology);
-            assert_eq!(thread_count(&topology), expected, "{name}, seed {seed}");
+            assert_eq!(strand_count(&topology), expected, "{name}, seed {seed}");
         }
     }
 }
 
 #[test]
-fn irregular_meshes_have_no_threads_and_neither_have_tiny_ones_and_fans() {
+fn irregular_meshes_have_no_strands_and_neither_have_tiny_ones_and_fans() {
     let far = |p: Vec3| p + Vec3::X * 5.0;
     let meshes = [
         ("Delaunay's", strewn(30)),
@@ -198,14 +198,14 @@ fn irregular_meshes_have_no_threads_and_neither_have_tiny_ones_and_fans() {
     ];
     for (name, mesh) in meshes {
         let topology = topology(mesh);
-        assert!(topology.strand_packs.is_empty() && topology.batches.iter().all(|batch| !batch.woven), "{name}");
+        assert!(topology.strand_packs.is_empty() && topology.batches.iter().all(|batch| !batch.on_strand), "{name}");
         assert!(matches!(topology.structure(), MeshStructure::Unstructured { .. }), "{name}");
     }
 }
 
 #[test]
 fn whatever_is_left_of_a_sheet_has_every_spring_once() {
-    let mut woven = 0;
+    let mut packed = 0;
     for seed in 0..60 {
         let mut rng = Rng::with_seed(seed);
         let share = rng.f32();
@@ -213,9 +213,9 @@ fn whatever_is_left_of_a_sheet_has_every_spring_once() {
         missing[9 * 20 + 9] = true;
         let topology = topology(quads(20, |row, column| !missing[(row * 20 + column) as usize]));
         assert_shared_out(&topology);
-        woven += usize::from(!topology.strand_packs.is_empty());
+        packed += usize::from(!topology.strand_packs.is_empty());
     }
-    assert!(woven > 10, "{woven} of 60");
+    assert!(packed > 10, "{packed} of 60");
 }
 
 /// A sheet that hangs by the two particles that are farthest up, left and right.
@@ -228,10 +228,10 @@ fn hung(mesh: SourceMesh) -> Bed {
     Bed { fluid_density: 0.0, ..bed }.pinned([left, right]).tethered(&[left, right])
 }
 
-/// The same cloth with its threads taken apart.
+/// The same cloth with its strands taken apart.
 fn unravelled(mut bed: Bed) -> Bed {
     bed.topology.strand_packs.clear();
-    bed.topology.batches.iter_mut().for_each(|batch| batch.woven = false);
+    bed.topology.batches.iter_mut().for_each(|batch| batch.on_strand = false);
     bed
 }
 
@@ -242,7 +242,7 @@ fn upright_triangles(n: u32) -> SourceMesh {
 }
 
 #[test]
-fn threads_leave_less_strain_than_springs_in_as_many_substeps() {
+fn strands_leave_less_strain_than_springs_in_as_many_substeps() {
     for (name, mesh, factor) in
         [("triangles", upright_triangles(32), 0.4), ("an L", ell(32), 0.2), ("a disc", disc(48, 16), 0.5)]
     {
@@ -257,7 +257,7 @@ fn threads_leave_less_strain_than_springs_in_as_many_substeps() {
 }
 
 #[test]
-fn threads_move_as_the_textbook_says_when_steps_are_small() {
+fn strands_move_as_the_textbook_says_when_steps_are_small() {
     let turn = Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2);
     let meshes = [("triangles", upright_triangles(10)), ("an L", ell(10)), ("a sleeve", sleeve(10, 10))];
     for ((name, mesh), damping) in meshes.iter().flat_map(|mesh| [(mesh, 0.0), (mesh, 0.05)]) {
@@ -285,7 +285,7 @@ fn threads_move_as_the_textbook_says_when_steps_are_small() {
 }
 
 #[test]
-fn the_substeps_to_hold_a_strain_hold_it_on_threads() {
+fn the_substeps_to_hold_a_strain_hold_it_on_strands() {
     let mut failures = Vec::new();
     for (side, max_strain) in [(16, 0.01), (32, 0.01), (32, 0.005)] {
         let mut bed = hung(ell(side));
@@ -310,7 +310,7 @@ fn the_substeps_to_hold_a_strain_hold_it_on_threads() {
 fn a_mesh_says_what_it_was_found_to_be() {
     let texts: [(SourceMesh, _); 3] = [
         (Grid::new(1.0, 1.0, 30, 20).into(), "20 rows, 30 columns"),
-        (ell(24), "48 threads"),
+        (ell(24), "48 strands"),
         (triangle(), "springs in 3 colours"),
     ];
     for (mesh, text) in texts {

@@ -41,24 +41,24 @@ impl Ball {
         self.velocity += bed.gravity * dt;
         self.centre += self.velocity * dt;
         self.turn = (Quat::from_scaled_axis((self.spin * dt).into()) * self.turn).normalize();
-        let world = bed.pin_motions.len() - bed.mounted.len();
-        bed.mounted.clear();
+        let world = bed.pin_motions.len() - bed.attached_pins.len();
+        bed.attached_pins.clear();
         for (k, &(particle, arm)) in arms.iter().enumerate() {
             let anchor = &mut bed.pin_motions[world + k];
             assert_eq!(anchor.particle, particle);
             anchor.start = bed.particles.position[particle as usize];
             anchor.end = self.centre + self.turn * arm;
-            bed.mounted.push(AttachedPin { anchor: (world + k) as u32, mount: 0 });
+            bed.attached_pins.push(AttachedPin { pin_motion: (world + k) as u32, attachment: 0 });
         }
         let inverse_inertia = Mat3A::from_diagonal(Vec3A::splat(1.0 / self.inertia()).into());
         let body = Body { inverse_mass: 1.0 / self.mass, inverse_inertia, centre: before.centre };
-        bed.mounts = vec![BodyAttachment { body, way: self.centre - before.centre }];
+        bed.body_attachments = vec![BodyAttachment { body, displacement: self.centre - before.centre }];
         bed.step(dt);
-        let (push, stray) = bed.scratch.pulls()[0];
-        self.velocity += push.linear / self.mass;
-        self.spin += push.angular / self.inertia();
-        self.centre += stray.shift;
-        self.turn = (stray.turn * self.turn).normalize();
+        let (impulse, displacement) = bed.scratch.attachment_impulses()[0];
+        self.velocity += impulse.linear / self.mass;
+        self.spin += impulse.angular / self.inertia();
+        self.centre += displacement.shift;
+        self.turn = (displacement.turn * self.turn).normalize();
     }
 
     fn place(&self, arm: Vec3A) -> Vec3A {
@@ -70,8 +70,8 @@ impl Ball {
 fn on_a_ball(mut bed: Bed, particles: &[u32], ball: &Ball) -> (Bed, Vec<(u32, Vec3A)>) {
     let arms: Vec<_> = particles.iter().map(|&i| (i, bed.particles.position[i as usize] - ball.centre)).collect();
     bed = bed.pinned(particles.iter().copied());
-    for &(anchor, _) in &arms {
-        bed.mounted.push(AttachedPin { anchor, mount: 0 });
+    for &(pin_motion, _) in &arms {
+        bed.attached_pins.push(AttachedPin { pin_motion, attachment: 0 });
     }
     (bed, arms)
 }
