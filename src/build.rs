@@ -15,7 +15,7 @@ pub(crate) mod system;
 
 pub use crate::solver::{grab_tethers, tethers};
 
-/// The geometry of a mesh that a cloth can be built from, for those who run the [`solver`](crate::solver) themselves.
+/// The geometry of a mesh that a cloth can be built from, for those who run the [`solver`] themselves.
 ///
 /// # Errors
 ///
@@ -24,7 +24,7 @@ pub fn source_of(mesh: &Mesh) -> Result<SourceMesh, ClothError> {
     Ok(mesh_input::read(mesh)?.wound_by_normals())
 }
 
-/// The springs of a mesh, for those who run the [`solver`](crate::solver) themselves.
+/// The springs of a mesh, for those who run the [`solver`] themselves.
 ///
 /// `to_world` gives the rest shape its scale: one unit after it is a metre. Vertices that share a position are one
 /// particle. Particles are numbered row by row where the mesh has rows and columns, else in the order of their first

@@ -48,7 +48,7 @@ impl From<ClothSolver> for Method {
 /// Makes the entity's [`Mesh3d`] cloth. All else comes with it: [`Fabric`], [`Pins`], state and status.
 ///
 /// A mesh of up to 10,000 triangles is cloth from the next frame on. A larger one is worked on beside the frames, drawn
-/// as it is, until [`ClothReady`] is sent; pins, fabric, settings and transform count as they are then.
+/// as it is, until [`ClothReady`](crate::prelude::ClothReady) is sent; pins, fabric, settings and transform count as they are then.
 ///
 /// Skins and morph targets aren't followed yet. The cloth is simulated and drawn from the mesh's bind pose, at the entity's
 /// own transform, and one warning says so. Meanwhile the entity has neither `SkinnedMesh` nor `MeshMorphWeights`: they come

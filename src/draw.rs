@@ -8,4 +8,6 @@ mod skin;
 
 pub(crate) use binding::Binding;
 pub(crate) use mesh::{ClothMesh, Drawn, release, shape_cloths, write_meshes};
-pub(crate) use skin::{Lost, TakenOff, copy_without_skin, fit_skins};
+#[cfg(feature = "mesh_colliders")]
+pub(crate) use skin::TakenOff;
+pub(crate) use skin::{Lost, copy_without_skin, fit_skins};

@@ -20,7 +20,7 @@ pub enum ClothStatus {
     Failed(ClothError),
 }
 
-/// A mesh has become cloth. Its [`ClothState`] can be read from now on.
+/// A mesh has become cloth. Its [`ClothState`](crate::prelude::ClothState) can be read from now on.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClothReady {
     /// The cloth.
