@@ -22,7 +22,8 @@ impl ClothReport {
         self.latest
     }
 
-    /// Time that the latest step took on its thread.
+    /// Time that the latest step took by the clock. Of cloths that are stepped together, since they may touch each other, each has an
+    /// equal part.
     pub fn step_time(&self) -> Duration {
         self.step_time
     }

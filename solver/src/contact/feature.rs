@@ -131,11 +131,11 @@ pub(crate) trait ClothInStep {
     fn topology(&self) -> &Topology;
     /// Its particles.
     fn lanes(&self) -> &Lanes;
-    /// The same, to be moved.
+    /// The lanes, to be moved.
     fn lanes_mut(&mut self) -> &mut Lanes;
     /// The bodies among its obstacles.
     fn bodies(&self) -> &Bodies;
-    /// The same, to be pushed.
+    /// The bodies, to be pushed.
     fn bodies_mut(&mut self) -> &mut Bodies;
     /// Instructions that it is stepped with.
     fn simd_level(&self) -> SimdLevel;

@@ -9,7 +9,7 @@ pub struct SubstepPolicy {
     pub substeps: u32,
     /// Iterations of the coarse levels. Without tethers, there are none.
     pub levels: Vec<LevelPass>,
-    /// Substeps where more is at stake: something is near that the cloth may touch, a hand holds it, or no tethers do. Unless
+    /// Substeps where contact asks for more: something is near that the cloth may touch, a hand holds it, or no tethers do. Unless
     /// they are fixed, it takes half as many more where its triangles and edges meet those of cloth, and 16 at least; three
     /// times as many near solids with edges, or thin ones, and 32 at least; and twice that where they end in a tip, or fit
     /// through a cell.
@@ -38,7 +38,7 @@ impl SubstepPolicy {
     /// Fewer leave a cloth on something trembling, and stretch it in the hand.
     const LEAST_AT_CONTACT: f32 = 8.0;
 
-    /// The same for each particle along a side.
+    /// Fewest substeps at contact for each particle along a side.
     const LEAST_OF_SIDE: f32 = 1.0 / 6.0;
 
     /// With fewer, a pile lets go of its order under what falls on it. As many in all steps: where they change, the load that
@@ -58,10 +58,10 @@ impl SubstepPolicy {
     const GROWTH: f32 = 1.2;
     const GROWTH_ON_STRANDS: f32 = 0.8;
 
-    /// The same with levels.
+    /// Strain of one substep with levels.
     const STRAIN_WITH_LEVELS: f32 = 0.03;
 
-    /// The same with levels and without strands, for all but one in a hundred springs.
+    /// Strain of one substep with levels and without strands, which all but one in a hundred springs stay below.
     const LOOSE_STRAIN: f32 = 0.04;
 
     /// With fewer, triangles that are solved one after the other feed energy into a cloth that is pulled in its plane. Flags of
@@ -69,10 +69,10 @@ impl SubstepPolicy {
     /// of 100 sides): a test asks for that.
     const LEAST_ON_TRIANGLES: f32 = 8.0;
 
-    /// The same for each particle along a side.
+    /// Fewest substeps on triangles for each particle along a side.
     const LEAST_ON_TRIANGLES_OF_SIDE: f32 = 0.3;
 
-    /// The most that narrow triangles ask for: as many as the narrowest is longer than high.
+    /// Largest number of substeps that narrow triangles ask for, which is the length of the narrowest over its height.
     const MOST_FOR_SLIVERS: f32 = 32.0;
 
     /// Where more substeps than this would be needed, levels help.
@@ -143,7 +143,7 @@ impl SubstepPolicy {
         Self::levels_down_to(substeps, 0, topology)
     }
 
-    /// The same, with the finest `least` levels in any case.
+    /// Levels that go with so many substeps, the finest `least` of them in any case.
     fn levels_down_to(substeps: u32, least: usize, topology: &Topology) -> Vec<LevelPass> {
         let widest = side(topology) / (2.5 * substeps as f32);
         let iterations = if substeps < 4 { 8 } else { 4 };

@@ -26,7 +26,7 @@ pub struct Lanes {
     pub velocity: Points,
     /// Inverse mass, 1/kg. Zero for a fixed particle.
     pub inverse_mass: Vec<Lane>,
-    /// The same for eight rows side by side, column after column: of a lattice.
+    /// Inverse mass of the particles of a lattice, 1/kg: eight rows side by side, column after column.
     pub row_masses: Vec<Lane>,
 }
 
@@ -84,7 +84,7 @@ pub(crate) struct Run<'a> {
     pub velocity: &'a mut [Block],
     /// Inverse mass, 1/kg.
     pub inverse_mass: &'a mut [Lane],
-    /// The same for eight rows side by side, column after column: of a lattice.
+    /// Inverse mass of the particles of a lattice, 1/kg: eight rows side by side, column after column.
     pub row_masses: &'a mut [Lane],
 }
 
@@ -169,7 +169,7 @@ pub(crate) struct GridView<'a> {
     /// Positions before the substep; read only where springs are damped.
     pub previous: &'a [Block],
     pub inverse_mass: &'a [Lane],
-    /// The same, as [`masses_along_rows`] gives them.
+    /// Inverse masses as [`masses_along_rows`] gives them.
     pub row_masses: &'a [Lane],
 }
 

@@ -162,7 +162,7 @@ impl Lattice {
         }
     }
 
-    /// The same with strands of these lengths (m) and nothing else.
+    /// A lattice whose strands have these lengths (m), and nothing else.
     pub fn of_lengths(
         rows: usize,
         columns: usize,

@@ -52,7 +52,7 @@ impl StrandMaterial {
         is_bend_damped || self.is_stretch_damped()
     }
 
-    /// The same for stretch alone.
+    /// Constants of stretch alone.
     pub fn is_stretch_damped(&self) -> bool {
         match self {
             Self::Alike { stretch, bend } => stretch.c > 0.0 || bend.is_some_and(|bend| bend.c > 0.0),

@@ -42,7 +42,7 @@ pub(crate) trait DistanceQuery {
     fn correction(&self, i: usize, sweep: &ObstacleSweep, position: Vec3A, previous: Vec3A) -> Option<Correction>;
 }
 
-/// A solid: the same for all.
+/// A solid, which is one for all particles.
 pub(crate) struct UniformField<F>(pub F);
 
 impl<F: SignedDistanceField> DistanceQuery for UniformField<F> {

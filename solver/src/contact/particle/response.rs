@@ -131,7 +131,7 @@ fn sum<S: Simd>(lanes: f32x8<S>) -> f32 {
     sum
 }
 
-/// The same for one particle, at `position` and before the substep at `previous`.
+/// Brings one particle back to a surface, with friction: at `position` and before the substep at `previous`.
 pub(crate) fn one(
     correction: &Correction,
     [position, previous]: [&mut Vec3A; 2],

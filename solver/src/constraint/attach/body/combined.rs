@@ -36,7 +36,7 @@ impl CombinedBody {
         Self { pin_count: count, reach, inverse_mass, inverse_inertia: body.inverse_inertia * part, offset, part }
     }
 
-    /// The most that a push of 1 N s at `arm` (m) from the body's centre of mass gives it of velocity there, m/s.
+    /// Largest velocity that a push of 1 N s at `arm` (m) from the body's centre of mass gives it there, m/s.
     pub fn effective_inverse_mass(&self, arm: Vec3A) -> f32 {
         let arm = arm - self.offset;
         let turned = |axis: Vec3A| (self.inverse_inertia * arm.cross(axis)).cross(arm).length_squared();
