@@ -1,4 +1,4 @@
-//! Simulates cloth on plain data: what [`bevy_drape`](https://docs.rs/bevy_drape) does without entities, assets and windows.
+//! Simulates cloth on plain data: what `bevy_drape` does without entities, assets and windows.
 //!
 //! [`build()`] makes a [`Topology`] of a triangle mesh, [`Particles`] are its state, and [`step()`] advances it by some
 //! seconds; [`step_together`] does so with cloths that may touch each other. All quantities are in SI units and relative to
