@@ -1,0 +1,87 @@
+//! What is known of a cloth's step before its substeps begin: how many there are, and why.
+
+use crate::{
+    constraint::attach::grab,
+    contact::{self, feature},
+    explicit::{self, Stability},
+    input::{ContactRisk, MAX_TIME_STEP, Method, SelfCollision, StepContext},
+    particles::Particles,
+    scratch::Scratch,
+    shape::sharp_features::Sharpness,
+    step::report::SubstepReason,
+    topology::{Topology, level::LevelPass},
+};
+
+/// What is known of a cloth's step before its substeps begin.
+pub(super) struct Plan<'a> {
+    pub dt: f32,
+    pub is_near: bool,
+    /// Length that the longest edge is taken to have at obstacles, m.
+    pub longest_edge: f32,
+    pub levels: &'a [LevelPass],
+    pub substeps: u32,
+    pub reason: SubstepReason,
+    pub stability: Stability,
+}
+
+impl<'a> Plan<'a> {
+    /// None where there is nothing to do.
+    pub fn new(
+        particles: &Particles,
+        topology: &Topology,
+        ctx: &'a StepContext<'a>,
+        scratch: &mut Scratch,
+    ) -> Option<Self> {
+        let dt = ctx.dt.min(MAX_TIME_STEP);
+        scratch.bodies.begin(ctx);
+        if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
+            return None;
+        }
+        let mut near = contact::near_obstacles(particles, ctx, dt).peekable();
+        let is_near = near.peek().is_some();
+        // Nothing else asks for it: a cloth that nothing is near needs no surface.
+        let longest_edge = if is_near { feature::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };
+        let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
+        let touches = ctx.settings.self_collision != SelfCollision::Off;
+        let is_on_body = !ctx.attached_pins.is_empty();
+        let some = match () {
+            () if is_near => Some(SubstepReason::Obstacle),
+            () if touches => Some(SubstepReason::SelfCollision),
+            () if is_on_body => Some(SubstepReason::OnBody),
+            () if !ctx.grabs.is_empty() => Some(SubstepReason::Grabbed),
+            () if !is_tethered => Some(SubstepReason::Untethered),
+            () => None,
+        };
+        let risk =
+            match (feature::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.settings.self_collision) {
+                (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
+                (Some((Sharpness::Edge, wanted)), _) => ContactRisk::Edge(wanted),
+                (None, SelfCollision::Robust) => ContactRisk::Robust,
+                (None, _) if some.is_some() => ContactRisk::Some,
+                (None, _) => ContactRisk::None,
+            };
+        let (wanted, levels) = ctx.settings.substep_policy.of_step(risk, dt);
+        let (without_risk, _) = ctx.settings.substep_policy.of_step(ContactRisk::None, dt);
+        let reason = match ctx.settings.method {
+            Method::Explicit => SubstepReason::Stability,
+            Method::Strands | Method::Xpbd if !ctx.settings.substep_policy.follows_time_step => SubstepReason::Fixed,
+            Method::Strands | Method::Xpbd if wanted == without_risk => SubstepReason::Strain,
+            Method::Strands | Method::Xpbd => SubstepReason::of_risk(risk, some.unwrap_or_default()),
+        };
+        // Levels move what hangs on a body without its weight on the body.
+        let levels = if is_on_body { &[] } else { levels };
+        let (most, stability, levels) = match ctx.settings.method {
+            Method::Strands => (u32::MAX, Stability::unconditional(wanted), levels),
+            Method::Xpbd => (u32::MAX, Stability::unconditional(wanted), &[][..]),
+            Method::Explicit => {
+                scratch.lanes.load(particles, topology.order(), scratch.simd_level);
+                grab::take_up(&mut scratch.lanes, ctx.grabs);
+                scratch.body_attachments.begin(&mut scratch.lanes, topology, ctx);
+                let stability = explicit::stability(&scratch.lanes, topology, ctx, dt, &mut scratch.spring_sums);
+                (ctx.settings.max_substeps.max(1), stability, &[][..])
+            }
+        };
+        let substeps = stability.needed.min(most);
+        Some(Self { dt, is_near, longest_edge, levels, substeps, reason, stability })
+    }
+}

@@ -1,0 +1,271 @@
+//! A cloth within its step: it is taken over, advanced substep by substep, and handed back.
+
+use core::ops::Range;
+
+use bevy_math::Vec3A;
+use bevy_tasks::TaskPool;
+
+use crate::{
+    constraint::{
+        attach::{grab, pin_motion},
+        strand::grid::StrandDirection,
+    },
+    contact::{self, body::Bodies, feature::ClothInStep, mesh::MeshContacts},
+    explicit::Stability,
+    force::wind,
+    imperfection,
+    input::{Method, SelfCollision, StepContext},
+    integrate::{self, Motion, SpeedLimit},
+    layout::simd::SimdLevel,
+    parallel::grid_substep,
+    particles::{Particles, lanes::Lanes},
+    scratch::Scratch,
+    step::{
+        plan::Plan,
+        report::{StepReport, SubstepReason},
+        substep::Substep,
+    },
+    topology::{Topology, lattice::Lattice},
+};
+
+/// How often the forces of the air are renewed within a step, Hz. They change more slowly than the springs.
+const AIR_RATE: f32 = 160.0;
+
+/// A cloth within its step.
+pub(super) struct Running<'a> {
+    pub particles: &'a mut Particles,
+    pub scratch: &'a mut Scratch,
+    pub topology: &'a Topology,
+    pub ctx: &'a StepContext<'a>,
+    pub substep: Substep<'a>,
+    /// Its origin from that of the first cloth, m.
+    pub offset: Vec3A,
+    /// Length that its longest edge is taken to have at obstacles, m.
+    pub longest_edge: f32,
+    dt: f32,
+    substeps: u32,
+    reason: SubstepReason,
+    /// Substeps from one renewal of the air's forces to the next.
+    air_interval: u32,
+    /// Whether the free motion of the coming substep is done.
+    has_moved: bool,
+    /// Whether threads that share the work have finished the substep.
+    is_finished: bool,
+    contacts: u32,
+    /// Pairs of features that touched in the latest substep.
+    pub touched: u32,
+}
+
+impl<'a> Running<'a> {
+    pub fn begin(
+        plan: Plan<'a>,
+        particles: &'a mut Particles,
+        topology: &'a Topology,
+        ctx: &'a StepContext<'a>,
+        scratch: &'a mut Scratch,
+        substeps: u32,
+        offset: Vec3A,
+    ) -> Self {
+        let Plan { dt, is_near, longest_edge, levels, stability, .. } = plan;
+        let reason = if plan.substeps < substeps { SubstepReason::OtherCloth } else { plan.reason };
+        let h = dt / substeps as f32;
+        let helpers = helpers(topology, ctx);
+        imperfection::seed(particles, topology, ctx);
+        let Loaded { is_pushed, has_moved } = load(particles, topology, ctx, h, helpers, scratch);
+        grab::take_up(&mut scratch.lanes, ctx.grabs);
+        scratch.broad_phase.begin();
+        scratch.faces.resize_with(ctx.obstacles.len().max(scratch.faces.len()), MeshContacts::default);
+        scratch.faces.iter_mut().for_each(MeshContacts::begin);
+        scratch.body_attachments.begin(&mut scratch.lanes, topology, ctx);
+        let substep = Substep {
+            topology,
+            ctx,
+            h,
+            stability,
+            is_pushed,
+            is_near,
+            touches: ctx.settings.self_collision != SelfCollision::Off || is_near,
+            limit: SpeedLimit {
+                around: pin_motion::mean_velocity(ctx.pin_motions, dt),
+                most: ctx.settings.max_velocity,
+            },
+            helpers,
+            last: StrandDirection::between(ctx.pin_motions, topology.order()),
+            levels,
+            slack: ctx.slack(),
+        };
+        scratch.air.sample(particles, ctx);
+        substep.prepare(scratch);
+        scratch.body_attachments.rest(&mut scratch.lanes);
+        Self {
+            particles,
+            scratch,
+            topology,
+            ctx,
+            substep,
+            offset,
+            longest_edge,
+            dt,
+            substeps,
+            reason,
+            air_interval: ((1.0 / (AIR_RATE * h)) as u32).max(1),
+            has_moved,
+            is_finished: false,
+            contacts: 0,
+            touched: 0,
+        }
+    }
+
+    /// Moves the cloth through the part `span` of the step, its substep `i`, as if it touched nothing.
+    pub fn advance(&mut self, i: u32, span: Range<f32>) {
+        let Self { particles, scratch, substep, air_interval, .. } = self;
+        let ctx = substep.ctx;
+        if i.is_multiple_of(*air_interval) {
+            substep.renew_steady_force(particles, *air_interval, scratch);
+        }
+        grab::carry(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
+        if ctx.settings.method == Method::Explicit {
+            substep.add_spring_forces(particles, scratch);
+        }
+        if !self.has_moved {
+            substep.move_freely(scratch);
+        }
+        pin_motion::advance(&mut scratch.lanes, ctx.pin_motions, span.end, self.dt);
+        let Scratch { lanes, body_attachments, applied_force, .. } = &mut **scratch;
+        body_attachments.advance(lanes, ctx, span.clone(), self.dt, substep.applied(applied_force));
+        scratch.bodies.advance(ctx, span.clone(), substep.h);
+        if let Some(tethers) = ctx.tethers {
+            scratch.pins.read(tethers, &scratch.lanes);
+        }
+        // Hands, and forces that are renewed, come first.
+        let is_renewed = substep.is_pushed && (i + 1).is_multiple_of(*air_interval);
+        let goes_on = i + 1 < self.substeps && ctx.grabs.is_empty() && !is_renewed;
+        self.has_moved = goes_on && ctx.settings.method != Method::Explicit;
+        self.is_finished = false;
+        match ctx.settings.method {
+            Method::Strands => {
+                grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
+                self.is_finished = substep.solve_strands(scratch, self.has_moved);
+            }
+            Method::Xpbd => {
+                substep.solve_springs(scratch);
+                grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
+                // After the hands: where both can't hold, pins are stronger.
+                substep.solve_tethers(scratch);
+            }
+            Method::Explicit => grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h),
+        }
+        let Scratch { lanes, body_attachments, .. } = &mut **scratch;
+        body_attachments.settle(lanes, ctx, substep.h);
+    }
+
+    /// Keeps the cloth out of obstacles and ends the substep.
+    pub fn finish(&mut self, span: Range<f32>) {
+        let Self { scratch, substep, .. } = self;
+        let ctx = substep.ctx;
+        if substep.is_near {
+            self.contacts = {
+                let Scratch { lanes, broad_phase, faces, bodies, simd_level, .. } = &mut **scratch;
+                contact::project(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, *simd_level)
+            };
+        }
+        // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
+        let is_constrained = ctx.settings.method != Method::Explicit || substep.touches || !ctx.grabs.is_empty();
+        if !self.is_finished && is_constrained {
+            let Scratch { lanes, applied_force, simd_level, .. } = &mut **scratch;
+            integrate::finish(&mut lanes.whole(), substep.finish(applied_force, self.has_moved), *simd_level);
+        }
+    }
+
+    /// Hands the state back.
+    pub fn end(self) -> StepReport {
+        let Self { particles, scratch, substep, substeps, reason, contacts, touched, .. } = self;
+        let contacts = contacts + touched;
+        let Scratch { lanes, steady_force, simd_level, .. } = scratch;
+        match substep.helpers {
+            Some((pool, _)) => grid_substep::store(pool, lanes, particles, *simd_level),
+            None => lanes.store(particles, *simd_level),
+        }
+        let steady_force = if substep.is_pushed { steady_force.iter().map(|force| force.length()).sum() } else { 0.0 };
+        let Stability { needed: needed_substeps, scale: stiffness_scale, .. } = substep.stability;
+        StepReport { substeps, reason, needed_substeps, stiffness_scale, contacts, steady_force }
+    }
+}
+
+impl ClothInStep for Running<'_> {
+    fn ctx(&self) -> &StepContext<'_> {
+        self.ctx
+    }
+
+    fn topology(&self) -> &Topology {
+        self.topology
+    }
+
+    fn lanes(&self) -> &Lanes {
+        &self.scratch.lanes
+    }
+
+    fn lanes_mut(&mut self) -> &mut Lanes {
+        &mut self.scratch.lanes
+    }
+
+    fn bodies(&self) -> &Bodies {
+        &self.scratch.bodies
+    }
+
+    fn bodies_mut(&mut self) -> &mut Bodies {
+        &mut self.scratch.bodies
+    }
+
+    fn simd_level(&self) -> SimdLevel {
+        self.scratch.simd_level
+    }
+
+    fn offset(&self) -> Vec3A {
+        self.offset
+    }
+
+    fn longest_edge(&self) -> f32 {
+        self.longest_edge
+    }
+
+    fn is_near(&self) -> bool {
+        self.substep.is_near
+    }
+}
+
+/// What is found when a cloth is taken over.
+struct Loaded {
+    /// Whether anything but gravity acts.
+    is_pushed: bool,
+    /// Whether the free motion of the first substep is done.
+    has_moved: bool,
+}
+
+/// Takes over the state of a cloth. Threads that share it begin the first substep, of `h` seconds, where they can.
+fn load(
+    particles: &Particles,
+    topology: &Topology,
+    ctx: &StepContext,
+    h: f32,
+    helpers: Option<(&TaskPool, &Lattice)>,
+    scratch: &mut Scratch,
+) -> Loaded {
+    let Scratch { lanes, simd_level, .. } = scratch;
+    let feels_air = wind::feels_air(ctx);
+    let Some((pool, lattice)) = helpers else {
+        lanes.load(particles, topology.order(), *simd_level);
+        return Loaded { is_pushed: feels_air || particles.is_pushed(0..particles.len()), has_moved: false };
+    };
+    let free = (!feels_air).then(|| Motion::free(ctx, h));
+    let is_pushed = feels_air | grid_substep::load(pool, lanes, particles, lattice.order(), free, *simd_level);
+    Loaded { is_pushed, has_moved: !is_pushed }
+}
+
+/// The threads that share the work, where it pays: all springs are on the lattice, and neither hands nor bodies hold it.
+fn helpers<'a>(topology: &'a Topology, ctx: &StepContext<'a>) -> Option<(&'a TaskPool, &'a Lattice)> {
+    let is_on_strands = ctx.settings.method == Method::Strands && topology.batches.iter().all(|batch| batch.on_strand);
+    let is_large = topology.particle_count() >= grid_substep::LARGE;
+    let is_free = ctx.grabs.is_empty() && ctx.attached_pins.is_empty();
+    ctx.pool.zip(topology.lattice.as_ref()).filter(|_| is_large && is_on_strands && is_free)
+}
