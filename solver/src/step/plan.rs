@@ -44,14 +44,14 @@ impl<'a> Plan<'a> {
         let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
         let touches = ctx.settings.self_collision != SelfCollision::Off;
         let is_on_body = !ctx.attached_pins.is_empty();
-        let some = match () {
-            () if is_near => Some(SubstepReason::Obstacle),
-            () if touches => Some(SubstepReason::SelfCollision),
-            () if is_on_body => Some(SubstepReason::OnBody),
-            () if !ctx.grabs.is_empty() => Some(SubstepReason::Grabbed),
-            () if !is_tethered => Some(SubstepReason::Untethered),
-            () => None,
-        };
+        let lesser_risks = [
+            (is_near, SubstepReason::Obstacle),
+            (touches, SubstepReason::SelfCollision),
+            (is_on_body, SubstepReason::OnBody),
+            (!ctx.grabs.is_empty(), SubstepReason::Grabbed),
+            (!is_tethered, SubstepReason::Untethered),
+        ];
+        let some = lesser_risks.into_iter().find_map(|(is_there, reason)| is_there.then_some(reason));
         let risk =
             match (feature::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.settings.self_collision) {
                 (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
@@ -60,11 +60,12 @@ impl<'a> Plan<'a> {
                 (None, _) if some.is_some() => ContactRisk::Some,
                 (None, _) => ContactRisk::None,
             };
-        let (wanted, levels) = ctx.settings.substep_policy.of_step(risk, dt);
-        let (without_risk, _) = ctx.settings.substep_policy.of_step(ContactRisk::None, dt);
+        let policy = &ctx.settings.substep_policy;
+        let (wanted, levels) = policy.of_step(risk, dt);
+        let (without_risk, _) = policy.of_step(ContactRisk::None, dt);
         let reason = match ctx.settings.method {
             Method::Explicit => SubstepReason::Stability,
-            Method::Strands | Method::Xpbd if !ctx.settings.substep_policy.follows_time_step => SubstepReason::Fixed,
+            Method::Strands | Method::Xpbd if !policy.follows_time_step => SubstepReason::Fixed,
             Method::Strands | Method::Xpbd if wanted == without_risk => SubstepReason::Strain,
             Method::Strands | Method::Xpbd => SubstepReason::of_risk(risk, some.unwrap_or_default()),
         };

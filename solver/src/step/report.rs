@@ -35,7 +35,7 @@ pub enum SubstepReason {
     /// Nothing was stepped: there is no particle, or no time has passed.
     #[default]
     Nothing,
-    /// The number was set by hand.
+    /// The policy has a fixed number: it was set by hand, or is the default of XPBD.
     Fixed,
     /// So many hold the strain that is aimed at on this mesh.
     Strain,
@@ -65,7 +65,7 @@ impl fmt::Display for SubstepReason {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
             Self::Nothing => "nothing was stepped",
-            Self::Fixed => "set by hand",
+            Self::Fixed => "a fixed number",
             Self::Strain => "for the strain that is aimed at",
             Self::Stability => "for the explicit solver's stability",
             Self::Untethered => "no tethers hold it",

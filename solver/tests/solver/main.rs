@@ -29,5 +29,6 @@ mod stages;
 mod statics;
 mod strand_packs;
 mod strands;
+mod substep_reasons;
 mod tethers;
 mod topology;

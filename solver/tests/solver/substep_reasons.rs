@@ -1,0 +1,75 @@
+//! A report says why a step took as many substeps as it did.
+
+use bevy_math::{
+    Isometry3d, Vec3,
+    primitives::{Cone, Cuboid, Sphere},
+};
+use drape_solver::{Method, Obstacle, SelfCollision, Solid, SubstepReason, step_together};
+
+use crate::{
+    bench_bed::{Bed, together},
+    fixtures::{
+        hand::{Grip, hand},
+        material::{Springs, springs},
+        mesh::icosphere,
+    },
+};
+
+const STEP: f32 = 1.0 / 60.0;
+
+/// Held and tethered by two corners, with as many substeps as a game takes.
+fn hung() -> Bed {
+    Bed::lying(12, springs(Springs::default())).pinned([0, 11]).tethered(&[0, 11]).like_a_game(Method::Strands)
+}
+
+/// That of the second step: what is sharp counts only once something moves.
+fn reason_of(mut bed: Bed) -> SubstepReason {
+    bed.step(STEP);
+    bed.step(STEP).reason
+}
+
+/// The cloth with its middle a millimetre above something that reaches up by `height` (m) from its own middle.
+fn above(solid: Solid, height: f32) -> Bed {
+    let below = Isometry3d::from_translation(Vec3::NEG_Y * (height + 0.001));
+    Bed { obstacles: vec![Obstacle::still(solid, below)], ..hung() }
+}
+
+#[test]
+fn what_raises_the_number_is_the_reason() {
+    assert_eq!(reason_of(hung()), SubstepReason::Strain);
+    assert_eq!(reason_of(hung().with_substeps(5)), SubstepReason::Fixed);
+    assert_eq!(reason_of(Bed { tethers: None, ..hung() }), SubstepReason::Untethered);
+    let held = Bed { grabs: vec![hand(&hung(), 30, [0.3, 0.3, 0.4], Grip::default())], ..hung() };
+    assert_eq!(reason_of(held), SubstepReason::Grabbed);
+    for (self_collision, reason) in [
+        (SelfCollision::Particles, SubstepReason::SelfCollision),
+        (SelfCollision::Robust, SubstepReason::RobustSelfCollision),
+    ] {
+        assert_eq!(reason_of(Bed { self_collision, ..hung() }), reason);
+    }
+    assert_eq!(reason_of(above(Solid::Sphere(Sphere::new(5.0)), 5.0)), SubstepReason::Obstacle);
+    assert_eq!(reason_of(above(Solid::Cuboid(Cuboid::from_length(0.4)), 0.2)), SubstepReason::SharpEdge);
+    assert_eq!(reason_of(above(Solid::Cone(Cone { radius: 0.1, height: 0.4 }), 0.2)), SubstepReason::SharpTip);
+    assert_eq!(reason_of(hung().like_a_game(Method::Explicit)), SubstepReason::Stability);
+}
+
+#[test]
+fn a_closed_mesh_and_a_step_without_time_have_their_reasons() {
+    let mut ball = Bed::new(icosphere(0.2, 4), springs(Springs::default())).like_a_game(Method::Strands);
+    // Its triangles ask for as many by themselves.
+    assert_eq!(ball.step(STEP).reason, SubstepReason::Strain);
+    assert_eq!(ball.step(0.0).reason, SubstepReason::Nothing);
+}
+
+#[test]
+fn the_one_that_needs_fewer_names_the_other_cloth() {
+    let mut beds = [
+        Bed { self_collision: SelfCollision::Robust, ..hung() },
+        Bed { self_collision: SelfCollision::Robust, ..hung().with_substeps(3) },
+    ];
+    let reasons = together(&mut beds, STEP, |members| {
+        step_together(members);
+        members.iter().map(|member| member.report.expect("it was stepped").reason).collect::<Vec<_>>()
+    });
+    assert_eq!(reasons, [SubstepReason::RobustSelfCollision, SubstepReason::OtherCloth]);
+}
