@@ -28,6 +28,7 @@ mod strand_packs;
 mod strands;
 pub mod stretch;
 mod topology;
+mod two_grid;
 pub mod weld;
 
 pub use error::MeshError;

@@ -21,6 +21,7 @@ pub(crate) mod imperfection;
 pub mod input;
 pub(crate) mod integrate;
 pub mod layout;
+pub mod linear;
 pub mod material;
 pub mod measure;
 pub(crate) mod noise;

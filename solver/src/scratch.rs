@@ -5,6 +5,7 @@ use bevy_math::Vec3A;
 use crate::{
     constraint::{
         attach::{body::BodyAttachments, tether::PinPlaces},
+        implicit::ImplicitBuffers,
         multigrid::Levels,
         strand::bend_factors::BendFactors,
         unstructured::bend::{BendSolver, stages::ChebyshevBuffers},
@@ -40,6 +41,8 @@ pub struct Scratch {
     pub(crate) ways: ChebyshevBuffers,
     /// How they bend in this step.
     pub(crate) bending: Option<BendSolver>,
+    /// The implicit solver of sheets.
+    pub(crate) implicit: ImplicitBuffers,
     /// The coarse levels.
     pub(crate) levels: Levels,
     /// What a lattice's bends have in common.

@@ -8,13 +8,19 @@ use bevy_math::Vec3;
 use crate::{
     geometry::bvh::TriangleBvh,
     layout::order::Order,
-    topology::{lattice::Lattice, level::Level, strand_pack::StrandPack},
+    topology::{
+        bend_pack::BendPack, face_pack::FacePack, lattice::Lattice, level::Level, strand_pack::StrandPack,
+        two_grid::TwoGrid,
+    },
 };
 
+pub mod bend_pack;
+pub mod face_pack;
 pub mod lattice;
 pub mod level;
 pub mod strand_pack;
 pub mod structure;
+pub mod two_grid;
 
 /// What a spring resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -154,14 +160,18 @@ pub struct Topology {
     pub springs: Vec<Spring>,
     /// The batches, in the order in which the solver visits them.
     pub batches: Vec<SpringBatch>,
-    /// The triangles that are in no cell, batch after batch.
+    /// The triangles that are in no cell of a lattice, batch after batch.
     pub faces: Vec<Face>,
-    /// Runs of faces of one colour, in the order in which the solver visits them.
+    /// Runs of up to eight faces, in the order in which the solver visits them: none of a run share a particle.
     pub face_batches: Vec<Range<usize>>,
+    /// The same, component by component: a pack a run.
+    pub face_packs: Vec<FacePack>,
     /// All that resists bending as a sheet does, batch after batch.
     pub bends: Vec<Bend>,
     /// The batches, in the order in which the solver visits them.
     pub bend_batches: Vec<BendBatch>,
+    /// The same, component by component, where there are no rows and columns: a pack a batch.
+    pub bend_packs: Vec<BendPack>,
     /// Whether any bend has a rest other than zero: the cloth isn't flat.
     pub is_curved: bool,
     /// No less than the square of the fastest frequency of bending if areal density and rigidity were 1, 1/m⁴.
@@ -180,6 +190,8 @@ pub struct Topology {
     pub strand_packs: Vec<StrandPack>,
     /// Coarse lattices, the coarsest first.
     pub levels: Vec<Level>,
+    /// The particles of a mesh without rows and columns as the fine one of two grids.
+    pub two_grid: Option<TwoGrid>,
     /// Triangles, corners and edges to be found by what touches them.
     pub(crate) surface: OnceLock<TriangleBvh>,
 }

@@ -21,10 +21,6 @@ pub(crate) struct Cells {
     pub of_triangle: Vec<Option<u32>>,
 }
 
-/// Largest |cos| of a corner of a cell whose springs can be a sheet, and largest cosine between its sides and what they
-/// should be along, the warp or across it.
-const MOST_ASKEW: f32 = 0.1;
-
 impl Cells {
     /// Direction of the warp in each cell, given that in each triangle.
     pub fn warp(&self, of_triangles: &[Vec3]) -> Vec<Vec3> {
@@ -37,21 +33,9 @@ impl Cells {
         warp
     }
 
-    /// Those whose springs can be a sheet with the `warp` of each triangle: the others would be stiffer than it.
-    pub fn true_to(&self, rest: &[Vec3], warp: &[Vec3]) -> Self {
-        let is_true = |(corners, warp): (&[u32; 4], &Vec3)| {
-            let sides = sides(corners.map(|i| rest[i as usize]));
-            let along = [sides[0].dot(*warp).abs(), sides[1].dot(*warp).abs()];
-            largest_cosine(&sides) < MOST_ASKEW && along[0].min(along[1]) < MOST_ASKEW
-        };
-        let kept: Vec<bool> = self.corners.iter().zip(&self.warp(warp)).map(is_true).collect();
-        let numbers: Vec<u32> =
-            kept.iter().scan(0, |next, &kept| Some(core::mem::replace(next, *next + u32::from(kept)))).collect();
-        let number = |cell: Option<u32>| cell.filter(|&cell| kept[cell as usize]).map(|cell| numbers[cell as usize]);
-        Self {
-            corners: self.corners.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(corners, _)| *corners).collect(),
-            of_triangle: self.of_triangle.iter().map(|&cell| number(cell)).collect(),
-        }
+    /// None, of as many triangles: each is for itself.
+    pub fn without_all(&self) -> Self {
+        Self { corners: Vec::new(), of_triangle: vec![None; self.of_triangle.len()] }
     }
 }
 

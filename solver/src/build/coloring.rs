@@ -4,8 +4,12 @@
 //! direction of the mesh into the cloth.
 
 use core::ops::Range;
+use std::collections::VecDeque;
 
-use crate::{Spring, SpringBatch, SpringKind};
+use crate::{Spring, SpringBatch, SpringKind, layout::simd::LANES};
+
+/// How many items are looked at for eight that share no particle. Few, so that what a run touches is close in memory.
+const WINDOW: usize = 160;
 
 /// Order in which the solver visits the kinds. What comes last is held best: stretch shows more than bending.
 const ORDER: [SpringKind; 3] = [SpringKind::Bend, SpringKind::Shear, SpringKind::Structural];
@@ -59,4 +63,28 @@ pub(super) fn sort<T: Copy, const N: usize>(
         runs.push(start..sorted.len());
     }
     runs
+}
+
+/// Sorts items into runs of up to eight that share no particle and are close in memory.
+pub(super) fn runs<T: Copy, const N: usize>(
+    mut all: Vec<T>,
+    particles: impl Fn(&T) -> [u32; N],
+) -> (Vec<T>, Vec<Range<usize>>) {
+    all.sort_by_key(|item| particles(item).into_iter().min());
+    let mut left = VecDeque::from(all);
+    let (mut sorted, mut runs): (Vec<T>, Vec<Range<usize>>) = (Vec::with_capacity(left.len()), Vec::new());
+    while !left.is_empty() {
+        let start = sorted.len();
+        let mut at = 0;
+        while at < left.len().min(WINDOW) && sorted.len() < start + LANES {
+            let those = particles(&left[at]);
+            if sorted[start..].iter().any(|one| particles(one).iter().any(|particle| those.contains(particle))) {
+                at += 1;
+            } else {
+                sorted.extend(left.remove(at));
+            }
+        }
+        runs.push(start..sorted.len());
+    }
+    (sorted, runs)
 }

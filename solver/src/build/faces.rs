@@ -1,4 +1,4 @@
-//! Triangles that carry a sheet's moduli by themselves: those that are in no cell.
+//! Triangles that carry a sheet's moduli by themselves: those that are in no cell of a lattice.
 
 use core::ops::Range;
 
@@ -7,7 +7,7 @@ use bevy_math::{Vec2, Vec3};
 use super::{cells::Cells, coloring};
 use crate::Face;
 
-/// The faces and their runs of one colour. `warp` is the direction of the warp in each of `triangles`.
+/// The faces, and runs of up to eight that share no particle. `warp` is the direction of the warp in each of `triangles`.
 pub(super) fn find(
     rest: &[Vec3],
     triangles: &[[u32; 3]],
@@ -16,9 +16,7 @@ pub(super) fn find(
 ) -> (Vec<Face>, Vec<Range<usize>>) {
     let free = triangles.iter().zip(&cells.of_triangle).zip(warp).filter(|((_, cell), _)| cell.is_none());
     let faces = free.filter_map(|((&triangle, _), &warp)| face(rest, triangle, warp)).collect();
-    let mut sorted = Vec::new();
-    let batches = coloring::sort(rest.len(), faces, |face: &Face| face.particles, &mut sorted);
-    (sorted, batches)
+    coloring::runs(faces, |face: &Face| face.particles)
 }
 
 /// The triangle as a patch of cloth. With its sides' coordinates along warp and weft as columns of a matrix, the weights of
@@ -62,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn triangles_of_a_cell_are_no_faces_and_no_colour_has_a_particle_twice() {
+    fn triangles_of_a_cell_are_no_faces_and_no_run_has_a_particle_twice() {
         let rest = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, Vec3::new(2.5, 0.5, 0.0), Vec3::NEG_Y];
         let triangles = [[0, 1, 2], [0, 2, 3], [1, 4, 2], [1, 5, 4]];
         let cells = cells::find(&rest, &triangles, &Edges::new(rest.len(), &triangles));

@@ -40,15 +40,9 @@ struct Hinge {
     warp: Vec2,
 }
 
-/// A bend for each edge between two triangles, none of them on a strand. `areas` are those of the particles and `triangle_areas`
+/// A bend for each edge between two triangles. `areas` are those of the particles and `triangle_areas`
 /// those of the triangles, m², and `warp` is the direction of the warp in each triangle.
-pub(super) fn find(
-    rest: &[Vec3],
-    edges: &Edges,
-    areas: &[f32],
-    triangle_areas: &[f32],
-    warp: &[Vec3],
-) -> Vec<(Bend, bool)> {
+pub(super) fn find(rest: &[Vec3], edges: &Edges, areas: &[f32], triangle_areas: &[f32], warp: &[Vec3]) -> Vec<Bend> {
     let inner = edges.iter().filter_map(|sides| match sides {
         [one, other] => hinge(rest, [one, other], triangle_areas, warp),
         _ => None,
@@ -58,7 +52,7 @@ pub(super) fn find(
     let scale = calibrate(&hinges, triangle_areas).sqrt().recip();
     let scaled = |Hinge { bend: Bend { particles, weights, rest }, .. }| {
         let rest = if Vec3::from(rest).length() < FLAT { [0.0; 3] } else { rest.map(|r| r * scale) };
-        (Bend { particles, weights: weights.map(|weight| weight * scale), rest }, false)
+        Bend { particles, weights: weights.map(|weight| weight * scale), rest }
     };
     hinges.into_iter().map(scaled).collect()
 }
@@ -237,6 +231,6 @@ mod tests {
         let triangles = [[0, 2, 1], [0, 1, 3]];
         let bends = find(&rest, &Edges::new(4, &triangles), &[0.25, 0.25, 0.1, 0.15], &[0.3, 0.45], &[Vec3::Y; 2]);
         assert_eq!(bends.len(), 1);
-        assert!(bends[0].0.weights.iter().all(|weight| weight.is_finite() && *weight != 0.0));
+        assert!(bends[0].weights.iter().all(|weight| weight.is_finite() && *weight != 0.0));
     }
 }

@@ -9,6 +9,7 @@ use super::faces;
 use crate::{
     Bend, Face, Lattice, Level, StrandPack, StrandSet, Tethers, Topology, TransferOperator,
     layout::simd::{LANES, Lane},
+    topology::{bend_pack::BendPack, face_pack::FacePack},
 };
 
 /// Where particles, or nodes of a level, are at rest, by their slots.
@@ -57,12 +58,18 @@ pub fn stretch(
     for (face, built_face) in topology.faces.iter_mut().zip(&built.faces) {
         *face = stretched_face(built_face, &built.rest, &topology.rest, stretch);
     }
+    for (pack, run) in topology.face_packs.iter_mut().zip(&topology.face_batches) {
+        *pack = FacePack::new(&topology.faces[run.clone()], topology.rest.len() as u32);
+    }
     let mut shortest = f32::INFINITY;
     for (bend, built) in topology.bends.iter_mut().zip(&built.bends) {
         let [from, to, ..] = built.particles;
         let ratio = ratio(from, to);
         shortest = shortest.min(ratio);
         *bend = Bend { weights: built.weights.map(|weight| weight / ratio), ..*built };
+    }
+    for (pack, batch) in topology.bend_packs.iter_mut().zip(&topology.bend_batches) {
+        *pack = BendPack::new(&topology.bends[batch.range.clone()], topology.rest.len() as u32);
     }
     // It goes by the square of the weights: the areas stay, and with them the masses.
     topology.bend_rate = built.bend_rate / if shortest < f32::INFINITY { shortest * shortest } else { 1.0 };

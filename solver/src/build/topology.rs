@@ -15,11 +15,11 @@ use super::{
     lattice::{self, Rectangle},
     levels,
     plate::Plate,
-    rate, shares, springs, strand_packs, strands,
+    rate, shares, springs, strand_packs, strands, two_grid,
 };
 use crate::{
     build::MeshError,
-    topology::{Spring, Topology},
+    topology::{BendBatch, Spring, Topology, bend_pack::BendPack, face_pack::FacePack},
 };
 
 /// A triangle with less area than this share of its longest side squared is a sliver.
@@ -67,8 +67,8 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
     };
     let mut all: Vec<_> = links.iter().map(with_length).collect();
     let rectangle = rectangle.filter(Rectangle::is_in_order);
-    // Rows and columns are strands, whichever way they run.
-    let carrying = if rectangle.is_some() { cells.clone() } else { cells.true_to(&rest, &warp) };
+    // Where there are no rows and columns, triangles carry by themselves.
+    let carrying = if rectangle.is_some() { cells.clone() } else { cells.without_all() };
     shares::share_out(&rest, &carrying, &slivers, &warp, &mut all);
     let plate = rectangle.as_ref().map(|rectangle| Plate::new(&rest, rectangle));
     let on_strands =
@@ -93,8 +93,16 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
     let (faces, face_batches) = faces::find(&rest, &triangles, &carrying, &warp);
     let (bends, bend_batches) = match &plate {
         Some(plate) => bends::of_plate(plate, rest.len()),
-        None => bends::batches(rest.len(), &hinges::find(&rest, &edges, &areas, &triangle_areas, &warp)),
+        None => bends::of_hinges(hinges::find(&rest, &edges, &areas, &triangle_areas, &warp)),
     };
+    let nobody = rest.len() as u32;
+    let face_packs = face_batches.iter().map(|run| FacePack::new(&faces[run.clone()], nobody)).collect();
+    let bend_pack = |batch: &BendBatch| BendPack::new(&bends[batch.range.clone()], nobody);
+    let bend_packs = if lattice.is_none() { bend_batches.iter().map(bend_pack).collect() } else { Vec::new() };
+    let two_grid = lattice.is_none().then(|| {
+        let carrying: Vec<Spring> = springs.iter().copied().filter(|spring| spring.share != [0.0; 3]).collect();
+        two_grid::find(&areas, &faces, &carrying, &bends)
+    });
     // Those of a lattice are seldom solved one by one: what takes less time to find is good enough.
     let bend_rate = if lattice.is_some() { rate::bound(&bends, &areas) } else { rate::of_bends(&bends, &areas) };
     Topology {
@@ -110,10 +118,13 @@ pub(super) fn build(rest: Vec<Vec3>, shape: Shape, uvs: Option<Vec<Vec2>>, warp:
         levels,
         faces,
         face_batches,
+        face_packs,
+        two_grid,
         is_curved: bends.iter().any(|bend| bend.rest != [0.0; 3]),
         bend_rate,
         bends,
         bend_batches,
+        bend_packs,
         surface: OnceLock::new(),
     }
 }

@@ -16,6 +16,9 @@ pub struct SubstepPolicy {
     pub contact_substeps: u32,
     /// Levels of those.
     pub contact_levels: Vec<LevelPass>,
+    /// Substeps in place of [`substeps`](Self::substeps) and [`contact_substeps`](Self::contact_substeps) for sheets that implicit
+    /// steps solve: those with moduli on meshes without rows and columns.
+    pub implicit_substeps: [u32; 2],
     /// Whether the substeps are those of a step of 1/60 s, and a longer one has more of them.
     pub follows_time_step: bool,
 }
@@ -58,6 +61,10 @@ impl SubstepPolicy {
     const GROWTH: f32 = 1.2;
     const GROWTH_ON_STRANDS: f32 = 0.8;
 
+    /// Substeps of implicit steps for a strain of 1 %. What they stretch hardly depends on their number; how far fast falls lag
+    /// does, and how much of a swing is lost. They go by the root of the strain.
+    const OF_IMPLICIT: f32 = 4.0;
+
     /// Strain of one substep with levels.
     const STRAIN_WITH_LEVELS: f32 = 0.03;
 
@@ -99,7 +106,9 @@ impl SubstepPolicy {
         let in_range = |substeps: f32| substeps.ceil().clamp(2.0, 64.0) as u32;
         let (substeps, needed) = (in_range(needed.max(least_on_triangles(topology))), in_range(needed));
         let least = Self::LEAST_AT_CONTACT.max(Self::LEAST_OF_SIDE * side(topology)).ceil() as u32;
+        let implicit = (Self::OF_IMPLICIT * (0.01 / max_strain).sqrt()).ceil().clamp(2.0, 16.0) as u32;
         Self {
+            implicit_substeps: [implicit, implicit.max(Self::LEAST_AT_CONTACT as u32)],
             substeps,
             levels: if with_levels { Self::levels_down_to(substeps, 1, topology) } else { Vec::new() },
             // Without the floor: near what is sharp, a multiple of these is enough.
@@ -112,18 +121,29 @@ impl SubstepPolicy {
     /// So many substeps in every step.
     pub fn fixed(substeps: u32, levels: Vec<LevelPass>) -> Self {
         let contact_levels = levels.clone();
-        Self { substeps, levels, contact_substeps: substeps, contact_levels, follows_time_step: false }
+        let implicit_substeps = [substeps; 2];
+        Self {
+            substeps,
+            levels,
+            contact_substeps: substeps,
+            contact_levels,
+            implicit_substeps,
+            follows_time_step: false,
+        }
     }
 
-    /// Substeps and levels of a step of `dt` seconds.
-    pub(crate) fn of_step(&self, risk: ContactRisk, dt: f32) -> (u32, &[LevelPass]) {
+    /// Substeps and levels of a step of `dt` seconds, whether or not implicit steps solve it.
+    pub(crate) fn of_step(&self, risk: ContactRisk, dt: f32, is_implicit: bool) -> (u32, &[LevelPass]) {
         let factor = if self.follows_time_step { dt * 60.0 } else { 1.0 };
+        let [least, at_contact] =
+            if is_implicit { self.implicit_substeps } else { [self.substeps, self.contact_substeps] };
         let (substeps, levels) = match risk {
-            ContactRisk::None => (self.substeps, &self.levels),
+            ContactRisk::None => (least, &self.levels[..]),
             ContactRisk::Some | ContactRisk::Robust | ContactRisk::Edge(_) | ContactRisk::Tip(_) => {
-                (self.contact_substeps, &self.contact_levels)
+                (at_contact, &self.contact_levels[..])
             }
         };
+        let levels = if is_implicit { &[] } else { levels };
         let for_edges = (Self::MORE_WITH_SHARP * substeps as f32).max(Self::LEAST_WITH_SHARP);
         let substeps = match risk {
             _ if !self.follows_time_step => substeps as f32,
@@ -132,7 +152,7 @@ impl SubstepPolicy {
             ContactRisk::Edge(wanted) => (wanted / factor).clamp(for_edges, 2.0 * for_edges),
             ContactRisk::Tip(wanted) => 2.0 * (wanted / factor).clamp(for_edges, 2.0 * for_edges),
         };
-        let substeps = substeps.max(self.substeps as f32);
+        let substeps = substeps.max(least as f32);
         // A step of 1/60 s isn't longer than that by a rounding.
         ((substeps * factor - 0.01).ceil().max(1.0) as u32, levels)
     }

@@ -1,6 +1,6 @@
 //! The particles one by one, for constraints between any of them.
 
-use fearless_simd::{dispatch, f32x8, prelude::*};
+use fearless_simd::{dispatch, f32x4, f32x8, prelude::*};
 
 use crate::{
     layout::{
@@ -125,6 +125,15 @@ pub(crate) fn gather<S: Simd>(
             bead(gathered, h),
         ],
     )
+}
+
+/// Adds to what eight particles have in a list, one after the other: they may be the same.
+#[inline(always)]
+pub(crate) fn add<S: Simd>(simd: S, sums: &mut [[f32; 4]], particles: &[u32; LANES], Vec3x8 { x, y, z }: Vec3x8<S>) {
+    for (&i, more) in particles.iter().zip(together([x, y, z, f32x8::splat(simd, 0.0)])) {
+        let sum = &mut sums[i as usize];
+        *sum = (f32x4::simd_from(simd, *sum) + f32x4::simd_from(simd, more)).into();
+    }
 }
 
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! What is known of a cloth's step before its substeps begin: how many there are, and why.
 
 use crate::{
-    constraint::attach::grab,
+    constraint::{attach::grab, implicit::ImplicitSheet},
     contact::{self, feature},
     explicit::{self, Stability},
     input::{ContactRisk, MAX_TIME_STEP, Method, SelfCollision, StepContext},
@@ -41,7 +41,8 @@ impl<'a> Plan<'a> {
         let is_near = near.peek().is_some();
         // Nothing else asks for it: a cloth that nothing is near needs no surface.
         let longest_edge = if is_near { feature::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };
-        let is_tethered = ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
+        let is_implicit = ImplicitSheet::is_for(topology, ctx);
+        let is_tethered = is_implicit || ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
         let touches = ctx.settings.self_collision != SelfCollision::Off;
         let is_on_body = !ctx.attached_pins.is_empty();
         let lesser_risks = [
@@ -61,8 +62,8 @@ impl<'a> Plan<'a> {
                 (None, _) => ContactRisk::None,
             };
         let policy = &ctx.settings.substep_policy;
-        let (wanted, levels) = policy.of_step(risk, dt);
-        let (without_risk, _) = policy.of_step(ContactRisk::None, dt);
+        let (wanted, levels) = policy.of_step(risk, dt, is_implicit);
+        let (without_risk, _) = policy.of_step(ContactRisk::None, dt, is_implicit);
         let reason = match ctx.settings.method {
             Method::Explicit => SubstepReason::Stability,
             Method::Strands | Method::Xpbd if !policy.follows_time_step => SubstepReason::Fixed,

@@ -8,6 +8,7 @@ use bevy_tasks::TaskPool;
 use crate::{
     constraint::{
         attach::{grab, pin_motion},
+        implicit::ImplicitSheet,
         strand::grid::StrandDirection,
     },
     contact::{self, body::Bodies, feature::ClothInStep, mesh::MeshContacts},
@@ -92,6 +93,7 @@ impl<'a> Running<'a> {
             helpers,
             last: StrandDirection::between(ctx.pin_motions, topology.order()),
             levels,
+            implicit: ImplicitSheet::new(topology, ctx, h),
             slack: ctx.slack(),
         };
         scratch.air.sample(particles, ctx);
@@ -145,7 +147,10 @@ impl<'a> Running<'a> {
         match ctx.settings.method {
             Method::Strands => {
                 grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
-                self.is_finished = substep.solve_strands(scratch, self.has_moved);
+                match substep.implicit {
+                    Some(sheet) => substep.solve_implicit(sheet, scratch),
+                    None => self.is_finished = substep.solve_strands(scratch, self.has_moved),
+                }
             }
             Method::Xpbd => {
                 substep.solve_springs(scratch);

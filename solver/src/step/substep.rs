@@ -6,6 +6,7 @@ use bevy_tasks::TaskPool;
 use crate::{
     constraint::{
         attach::{grab, tether},
+        implicit::ImplicitSheet,
         multigrid::LevelSolve,
         strand::{
             bend_factors,
@@ -48,6 +49,8 @@ pub(crate) struct Substep<'a> {
     pub helpers: Option<(&'a TaskPool, &'a Lattice)>,
     pub last: StrandDirection,
     pub levels: &'a [LevelPass],
+    /// How a sheet on any triangles is solved, where it is one.
+    pub implicit: Option<ImplicitSheet<'a>>,
     /// By how much of its length a tether gives, no unit.
     pub slack: f32,
 }
@@ -55,6 +58,10 @@ pub(crate) struct Substep<'a> {
 impl Substep<'_> {
     /// Works out what doesn't change from substep to substep.
     pub fn prepare(&self, scratch: &mut Scratch) {
+        if let Some(sheet) = self.implicit {
+            sheet.prepare(&scratch.lanes, self.ctx, &mut scratch.implicit);
+            return;
+        }
         let is_solved = self.ctx.settings.method != Method::Explicit;
         let with_strands = self.ctx.settings.method == Method::Xpbd;
         let bending = || BendSolver::new(self.topology, with_strands, &self.ctx.material, &scratch.lanes, self.h);
@@ -119,7 +126,12 @@ impl Substep<'_> {
     fn motion<'a>(&self, force: &'a Points) -> Motion<'a> {
         // The other methods see to it when constraints have been solved.
         let limit = (self.ctx.settings.method == Method::Explicit).then_some(self.limit);
-        Motion { force: self.applied(force), limit, ..Motion::free(self.ctx, self.h) }
+        let free = Motion { limit, ..Motion::free(self.ctx, self.h) };
+        match self.implicit {
+            // They are in its right-hand side.
+            Some(_) => Motion { gravity: Vec3A::ZERO, ..free },
+            None => Motion { force: self.applied(force), ..free },
+        }
     }
 
     /// The force that is applied, if one is.
@@ -201,6 +213,12 @@ impl Substep<'_> {
             );
         }
         false
+    }
+
+    /// The implicit step of a sheet.
+    pub fn solve_implicit(&self, sheet: ImplicitSheet, scratch: &mut Scratch) {
+        let Scratch { lanes, gathered, implicit, applied_force, simd_level, .. } = scratch;
+        sheet.solve(lanes, self.applied(applied_force), gathered, implicit, *simd_level);
     }
 
     /// All springs, colour after colour.

@@ -14,6 +14,7 @@ mod fixtures;
 mod golden;
 mod grabs;
 mod grain;
+mod implicit;
 mod lattices;
 mod levels;
 mod memory;

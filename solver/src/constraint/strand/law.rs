@@ -87,6 +87,15 @@ impl DirectionModuli {
         strain.simd_gt(F::splat(simd, 0.0)).select(taut, pressed)
     }
 
+    /// The slope of the tension by the strain, times h², at strains side by side, kg.
+    #[inline(always)]
+    pub fn tangent<S: Simd, F: Wide<S>>(&self, simd: S, strain: F) -> F {
+        let threads = (self.stretch - self.shear).max(0.0);
+        let taut = strain * (2.0 * self.half_stiffening * threads) + (threads + self.shear);
+        let pressed = F::splat(simd, self.compression * threads + self.shear);
+        strain.simd_gt(F::splat(simd, 0.0)).select(taut, pressed)
+    }
+
     /// The same without what only strands do: stiffen, and give way where they are pressed together.
     pub fn linear(self) -> Self {
         Self { half_stiffening: 0.0, compression: 1.0, ..self }

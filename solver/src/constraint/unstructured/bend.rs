@@ -47,33 +47,47 @@ pub(crate) mod stages;
 /// How much stiffer a bend may be because of what is in the turn of its frame.
 const TURNING: f32 = 2.0;
 
+/// How bends answer in substeps of h seconds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BendLaw {
+    /// B h², kg m².
+    pub k: f32,
+    /// Damping, over h, kg m².
+    pub c: f32,
+    /// Whether anything needs the frame.
+    pub framed: bool,
+}
+
+impl BendLaw {
+    /// That of a material in substeps of `h` seconds. None where nothing resists bending.
+    pub fn new(topology: &Topology, material: &Material, h: f32) -> Option<Self> {
+        let moduli = material.moduli()?;
+        let (k, delay) = (moduli.bending * h * h, moduli.bend_damping / h);
+        let acts = k > 0.0 && !topology.bends.is_empty();
+        acts.then_some(Self { k, c: k * delay, framed: topology.is_curved || delay > 0.0 })
+    }
+}
+
 /// How bends are solved in a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BendSolver {
-    /// B h², kg m².
-    k: f32,
-    /// Damping, over h, kg m².
-    c: f32,
-    /// Whether anything needs the frame.
-    framed: bool,
+    law: BendLaw,
     stages: Stages,
 }
 
 impl BendSolver {
     /// How a material bends in substeps of `h` seconds, with or without what is on strands; none where nothing does.
     pub fn new(topology: &Topology, with_strands: bool, material: &Material, lanes: &Lanes, h: f32) -> Option<Self> {
-        let moduli = material.moduli()?;
-        let (k, delay) = (moduli.bending * h * h, moduli.bend_damping / h);
-        if k == 0.0 || !topology.bend_batches.iter().any(|batch| with_strands || !batch.on_strand) {
+        let law = BendLaw::new(topology, material, h)?;
+        if !topology.bend_batches.iter().any(|batch| with_strands || !batch.on_strand) {
             return None;
         }
-        let framed = topology.is_curved || delay > 0.0;
-        let turning = if framed { TURNING } else { 1.0 };
+        let turning = if law.framed { TURNING } else { 1.0 };
+        let stiffness = law.k + law.c;
         let fastest =
-            k * (1.0 + delay) * topology.bend_rate / material.density * turning * lightness(topology, material, lanes);
+            stiffness * topology.bend_rate / material.density * turning * lightness(topology, material, lanes);
         let (stages, share) = Stages::for_rate(fastest);
-        let k = k * share;
-        Some(Self { k, c: k * delay, framed, stages })
+        Some(Self { law: BendLaw { k: law.k * share, c: law.c * share, ..law }, stages })
     }
 }
 
@@ -98,10 +112,11 @@ pub(crate) fn solve(
     for shares in bending.stages.shares() {
         for batch in topology.bend_batches.iter().filter(|batch| with_strands || !batch.on_strand) {
             let bends = &topology.bends[batch.range.clone()];
-            if bending.framed {
-                dispatch!(level, simd => pull_batch::<_, true>(simd, gathered, &mut ways.pull, bends, bending));
+            let GatheredParticles { now, before } = &*gathered;
+            if bending.law.framed {
+                dispatch!(level, simd => pull_batch::<_, true>(simd, now, before, &mut ways.pull, bends, bending.law));
             } else {
-                dispatch!(level, simd => pull_batch::<_, false>(simd, gathered, &mut ways.pull, bends, bending));
+                dispatch!(level, simd => pull_batch::<_, false>(simd, now, before, &mut ways.pull, bends, bending.law));
             }
         }
         dispatch!(level, simd => ways.advance(simd, &mut gathered.now, shares));

@@ -3,90 +3,120 @@
 use fearless_simd::{f32x8, prelude::*};
 
 use crate::{
-    constraint::unstructured::bend::BendSolver,
-    layout::{
-        points::{apart, together},
-        simd::{LANES, SHORTEST, Vec3x8, lane},
-    },
-    particles::gathered::{GatheredParticles, gather},
-    topology::Bend,
+    constraint::unstructured::bend::BendLaw,
+    layout::simd::{LANES, Lane, SHORTEST, Vec3x8, lane},
+    particles::gathered::{add, gather},
+    topology::{Bend, bend_pack::BendPack},
 };
 
 /// Times its angle, how much of its lengths a bend counts at least.
 const FOLDED: f32 = 3.0;
 
-/// Adds what the bends of one batch pull with, which share no particle.
+/// Frames of eight bends: directions along the edge and across it, the sum of weights times positions, how far the span goes along
+/// the edge, and one over the lengths of edge and span.
+pub type BendFrames = [Lane; 12];
+
+/// Adds what the bends of one batch pull with, which share no particle. The last particle of the lists is nobody.
 #[inline(always)]
 pub fn pull_batch<S: Simd, const FRAMED: bool>(
     simd: S,
-    gathered: &GatheredParticles,
+    now: &[[f32; 4]],
+    before: &[[f32; 4]],
     pull: &mut [[f32; 4]],
     bends: &[Bend],
-    bending: BendSolver,
+    bending: BendLaw,
 ) {
-    let (groups, rest) = bends.as_chunks::<LANES>();
-    for bends in groups {
-        pull_eight::<S, FRAMED>(simd, gathered, pull, bends, bending);
-    }
-    if !rest.is_empty() {
-        let mut bends = [Bend { particles: [gathered.dummy(); 4], ..Bend::default() }; LANES];
-        bends[..rest.len()].copy_from_slice(rest);
-        pull_eight::<S, FRAMED>(simd, gathered, pull, &bends, bending);
+    for bends in bends.chunks(LANES) {
+        pull_pack::<S, FRAMED>(simd, now, before, pull, &BendPack::new(bends, now.len() as u32 - 1), bending);
     }
 }
 
+/// Adds what eight bends pull with.
 #[inline(always)]
-fn pull_eight<S: Simd, const FRAMED: bool>(
+pub fn pull_pack<S: Simd, const FRAMED: bool>(
     simd: S,
-    gathered: &GatheredParticles,
+    now: &[[f32; 4]],
+    before: &[[f32; 4]],
     pull: &mut [[f32; 4]],
-    bends: &[Bend; LANES],
-    bending: BendSolver,
+    pack: &BendPack,
+    bending: BendLaw,
 ) {
-    let [b0, b1, b2, b3, b4, b5, b6, b7] = bends;
-    macro_rules! each {
-        ($field:ident [$i:literal]) => {
-            [
-                b0.$field[$i],
-                b1.$field[$i],
-                b2.$field[$i],
-                b3.$field[$i],
-                b4.$field[$i],
-                b5.$field[$i],
-                b6.$field[$i],
-                b7.$field[$i],
-            ]
-        };
-    }
-    let particles = [each!(particles[0]), each!(particles[1]), each!(particles[2]), each!(particles[3])];
-    let eight =
-        [&b0.weights, &b1.weights, &b2.weights, &b3.weights, &b4.weights, &b5.weights, &b6.weights, &b7.weights];
-    let [_, w1, w2, w3] = apart(simd, eight);
-    let weights = [w1, w2, w3];
-    let arms = BendElement8::of(simd, &gathered.now, &particles);
+    let weights = weights(simd, pack);
+    let arms = BendElement8::of(simd, now, &pack.particles);
     let pulls = if FRAMED {
-        let rest =
-            Vec3x8 { x: lane(simd, &each!(rest[0])), y: lane(simd, &each!(rest[1])), z: lane(simd, &each!(rest[2])) };
         // Nobody reads it where nothing is damped, and nobody has written it then.
-        let before = if bending.c > 0.0 { BendElement8::of(simd, &gathered.before, &particles) } else { arms };
+        let before = if bending.c > 0.0 { BendElement8::of(simd, before, &pack.particles) } else { arms };
+        let [x, y, z] = &pack.rest;
+        let rest = Vec3x8 { x: lane(simd, x), y: lane(simd, y), z: lane(simd, z) };
         arms.pull_framed(simd, before, weights, rest, bending)
     } else {
         arms.pull(weights, bending)
     };
-    let first = Vec3x8::splat(simd, [0.0; 3]) - (pulls[0] + pulls[1] + pulls[2]);
-    add(simd, pull, &particles[0], first);
-    add(simd, pull, &particles[1], pulls[0]);
-    add(simd, pull, &particles[2], pulls[1]);
-    add(simd, pull, &particles[3], pulls[2]);
+    add_all(simd, pull, &pack.particles, pulls);
+}
+
+/// The frames of eight bends at `now`, in memory.
+#[inline(always)]
+pub fn frames_of_pack<S: Simd>(simd: S, now: &[[f32; 4]], pack: &BendPack) -> BendFrames {
+    let arms = BendElement8::of(simd, now, &pack.particles);
+    let Frame8 { along, across, sum, skew, per_length, per_width, .. } = Frame8::new(simd, &arms, weights(simd, pack));
+    [
+        along.x.into(),
+        along.y.into(),
+        along.z.into(),
+        across.x.into(),
+        across.y.into(),
+        across.z.into(),
+        sum.x.into(),
+        sum.y.into(),
+        sum.z.into(),
+        skew.into(),
+        per_length.into(),
+        per_width.into(),
+    ]
+}
+
+/// Adds what eight bends pull with for what they are bent more by as their particles go in a `direction`: seen from their
+/// `frames`, which turn with them, or as if these stood still.
+#[inline(always)]
+pub fn multiply_pack<S: Simd>(
+    simd: S,
+    frames: Option<&BendFrames>,
+    direction: &[[f32; 4]],
+    product: &mut [[f32; 4]],
+    pack: &BendPack,
+    bending: BendLaw,
+) {
+    let weights = weights(simd, pack);
+    let ways = BendElement8::of(simd, direction, &pack.particles);
+    let stiffness = f32x8::splat(simd, bending.k + bending.c);
+    let pulls = match frames {
+        Some(frames) => {
+            let frame = Frame8::load(simd, frames);
+            frame.pull(frame.bent_by(ways, weights) * stiffness, weights)
+        }
+        None => {
+            let stress = ways.sum(weights) * stiffness;
+            [stress * weights[0], stress * weights[1], stress * weights[2]]
+        }
+    };
+    add_all(simd, product, &pack.particles, pulls);
 }
 
 #[inline(always)]
-fn add<S: Simd>(simd: S, pull: &mut [[f32; 4]], particles: &[u32; LANES], Vec3x8 { x, y, z }: Vec3x8<S>) {
-    for (&i, more) in particles.iter().zip(together([x, y, z, f32x8::splat(simd, 0.0)])) {
-        for (pull, more) in pull[i as usize].iter_mut().zip(more) {
-            *pull += more;
-        }
-    }
+fn weights<S: Simd>(simd: S, pack: &BendPack) -> [f32x8<S>; 3] {
+    let [w1, w2, w3] = &pack.weights;
+    [lane(simd, w1), lane(simd, w2), lane(simd, w3)]
+}
+
+/// Adds pulls at the particles but the first, which takes what is left.
+#[inline(always)]
+fn add_all<S: Simd>(simd: S, sums: &mut [[f32; 4]], particles: &[[u32; LANES]; 4], pulls: [Vec3x8<S>; 3]) {
+    let first = Vec3x8::splat(simd, [0.0; 3]) - (pulls[0] + pulls[1] + pulls[2]);
+    add(simd, sums, &particles[0], first);
+    add(simd, sums, &particles[1], pulls[0]);
+    add(simd, sums, &particles[2], pulls[1]);
+    add(simd, sums, &particles[3], pulls[2]);
 }
 
 /// Eight bends: from the first particle to the others. With the differences, the numbers are small wherever the cloth is.
@@ -113,7 +143,7 @@ impl<S: Simd> BendElement8<S> {
 
     /// What pulls at the particles but the first, where the cloth is flat at rest and nothing is damped.
     #[inline(always)]
-    fn pull(&self, weights: [f32x8<S>; 3], bending: BendSolver) -> [Vec3x8<S>; 3] {
+    fn pull(&self, weights: [f32x8<S>; 3], bending: BendLaw) -> [Vec3x8<S>; 3] {
         let [w1, w2, w3] = weights;
         let [k1, k2, k3] = [w1 * bending.k, w2 * bending.k, w3 * bending.k];
         let sum = self.sum(weights);
@@ -128,12 +158,60 @@ impl<S: Simd> BendElement8<S> {
         before: Self,
         weights: [f32x8<S>; 3],
         rest: Vec3x8<S>,
-        bending: BendSolver,
+        bending: BendLaw,
     ) -> [Vec3x8<S>; 3] {
-        let [w1, w2, w3] = weights;
-        let sum = self.sum(weights);
-        let edge = self.0[0];
-        let span = self.0[2] - self.0[1];
+        let frame = Frame8::new(simd, self, weights);
+        let Frame8 { along, across, normal, sum, .. } = frame;
+        let bent = sum - (along * rest.x + across * rest.y + normal * rest.z);
+        let mut stress = bent * f32x8::splat(simd, bending.k);
+        if bending.c > 0.0 {
+            let way = self.since(before);
+            // What goes farther than it is long within a substep was put there, as by tethers, and isn't slowed down.
+            let (size, moved) = (self.size(), way.size());
+            let least = f32x8::splat(simd, f32::MIN_POSITIVE);
+            let share = (size / moved.max(least)).sqrt().min(f32x8::splat(simd, 1.0));
+            stress = stress + frame.bent_by(way, weights) * (share * bending.c);
+        }
+        frame.pull(stress, weights)
+    }
+
+    /// The ways from where they were.
+    #[inline(always)]
+    fn since(&self, before: Self) -> Self {
+        let ([a, b, c], [d, e, f]) = (self.0, before.0);
+        Self([a - d, b - e, c - f])
+    }
+
+    /// Edge and span, squared.
+    #[inline(always)]
+    fn size(&self) -> f32x8<S> {
+        let (edge, span) = (self.0[0], self.0[2] - self.0[1]);
+        edge.dot(edge) + span.dot(span)
+    }
+}
+
+/// The frames of eight bends, which turn with them.
+#[derive(Clone, Copy)]
+struct Frame8<S: Simd> {
+    along: Vec3x8<S>,
+    across: Vec3x8<S>,
+    normal: Vec3x8<S>,
+    /// The sum of weights times positions.
+    sum: Vec3x8<S>,
+    /// How far the span goes along the edge, m.
+    skew: f32x8<S>,
+    /// 1 over the length of the edge, and over that of the span across it, 1/m.
+    per_length: f32x8<S>,
+    per_width: f32x8<S>,
+}
+
+impl<S: Simd> Frame8<S> {
+    #[inline(always)]
+    fn new(simd: S, arms: &BendElement8<S>, weights: [f32x8<S>; 3]) -> Self {
+        let [_, w2, w3] = weights;
+        let sum = arms.sum(weights);
+        let edge = arms.0[0];
+        let span = arms.0[2] - arms.0[1];
         let shortest = f32x8::splat(simd, SHORTEST);
         let length = edge.dot(edge).sqrt().max(shortest);
         let along = edge * (f32x8::splat(simd, 1.0) / length);
@@ -142,9 +220,6 @@ impl<S: Simd> BendElement8<S> {
         let width = across.dot(across).sqrt().max(shortest);
         let across = across * (f32x8::splat(simd, 1.0) / width);
         let normal = along.cross(across);
-
-        let bent = sum - (along * rest.x + across * rest.y + normal * rest.z);
-        let mut stress = bent * f32x8::splat(simd, bending.k);
         // A bend that is folded up turns with its slightest motion: there, its frame follows by less.
         let size = sum.dot(sum).sqrt() * FOLDED;
         let least = f32x8::splat(simd, f32::MIN_POSITIVE);
@@ -153,17 +228,39 @@ impl<S: Simd> BendElement8<S> {
         // Where it lies along the edge rather than across, a turn about the edge takes the edge's ends along as far.
         let lean = (skew / width).abs().max(one);
         let length = length.max(size * lean / (w2 + w3).abs().max(least));
-        let (per_length, per_width) = (one / length, one / width);
-        if bending.c > 0.0 {
-            let (edge_way, span_way) = (edge - before.0[0], span - (before.0[2] - before.0[1]));
-            let rise = normal.dot(edge_way) * per_length;
-            let turn = along * ((normal.dot(span_way) - skew * rise) * per_width) - across * rise
-                + normal * (across.dot(edge_way) * per_length);
-            // What goes farther than it is long within a substep was put there, as by tethers, and isn't slowed down.
-            let (size, way) = (edge.dot(edge) + span.dot(span), edge_way.dot(edge_way) + span_way.dot(span_way));
-            let moved = (size / way.max(least)).sqrt().min(one);
-            stress = stress + (sum - before.sum(weights) - turn.cross(sum)) * (moved * bending.c);
+        Self { along, across, normal, sum, skew, per_length: one / length, per_width: one / width }
+    }
+
+    #[inline(always)]
+    fn load(simd: S, [a, b, c, d, e, f, g, h, i, skew, per_length, per_width]: &BendFrames) -> Self {
+        let along = Vec3x8 { x: lane(simd, a), y: lane(simd, b), z: lane(simd, c) };
+        let across = Vec3x8 { x: lane(simd, d), y: lane(simd, e), z: lane(simd, f) };
+        Self {
+            along,
+            across,
+            normal: along.cross(across),
+            sum: Vec3x8 { x: lane(simd, g), y: lane(simd, h), z: lane(simd, i) },
+            skew: lane(simd, skew),
+            per_length: lane(simd, per_length),
+            per_width: lane(simd, per_width),
         }
+    }
+
+    /// How the sum changes in the frame as the particles go their ways.
+    #[inline(always)]
+    fn bent_by(&self, ways: BendElement8<S>, weights: [f32x8<S>; 3]) -> Vec3x8<S> {
+        let Self { along, across, normal, sum, skew, per_length, per_width } = *self;
+        let (edge_way, span_way) = (ways.0[0], ways.0[2] - ways.0[1]);
+        let rise = normal.dot(edge_way) * per_length;
+        let turn = along * ((normal.dot(span_way) - skew * rise) * per_width) - across * rise
+            + normal * (across.dot(edge_way) * per_length);
+        ways.sum(weights) - turn.cross(sum)
+    }
+
+    /// What a stress pulls with at the particles but the first: the transpose of [`bent_by`](Self::bent_by).
+    #[inline(always)]
+    fn pull(&self, stress: Vec3x8<S>, [w1, w2, w3]: [f32x8<S>; 3]) -> [Vec3x8<S>; 3] {
+        let Self { along, across, normal, sum, skew, per_length, per_width } = *self;
         let torque = sum.cross(stress);
         let about_along = torque.dot(along) * per_width;
         let on_edge = across * (torque.dot(normal) * per_length)
@@ -181,19 +278,16 @@ mod tests {
 
     use super::*;
     use crate::{
-        constraint::unstructured::bend::{
-            element::{
-                BendElement,
-                tests::{hinge, state},
-            },
-            stages::Stages,
+        constraint::unstructured::bend::element::{
+            BendElement,
+            tests::{hinge, state},
         },
         layout::simd::SimdLevel,
         material::Moduli,
     };
 
     /// What eleven copies of a bend pull with, each at its own particles.
-    fn pulls(bend: Bend, now: [Vec3A; 4], before: [Vec3A; 4], bending: BendSolver) -> Vec<Vec3A> {
+    fn pulls(bend: Bend, now: [Vec3A; 4], before: [Vec3A; 4], bending: BendLaw) -> Vec<Vec3A> {
         const COUNT: usize = 11;
         let bends: Vec<Bend> =
             (0..COUNT as u32).map(|i| Bend { particles: [4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3], ..bend }).collect();
@@ -201,21 +295,21 @@ mod tests {
             let points = points.map(|p| [p.x, p.y, p.z, 1.0]);
             points.into_iter().cycle().take(4 * COUNT).chain([[0.0; 4]]).collect()
         };
-        let gathered = GatheredParticles { now: list(now), before: list(before) };
-        let mut pull = vec![[0.0; 4]; gathered.now.len()];
+        let (now, before) = (list(now), list(before));
+        let mut pull = vec![[0.0; 4]; now.len()];
         for simd_level in [SimdLevel::Best, SimdLevel::Baseline] {
             pull.fill([0.0; 4]);
             dispatch!(simd_level.level(), simd => match bending.framed {
-                true => pull_batch::<_, true>(simd, &gathered, &mut pull, &bends, bending),
-                false => pull_batch::<_, false>(simd, &gathered, &mut pull, &bends, bending),
+                true => pull_batch::<_, true>(simd, &now, &before, &mut pull, &bends, bending),
+                false => pull_batch::<_, false>(simd, &now, &before, &mut pull, &bends, bending),
             });
         }
         assert!(pull[..4 * COUNT].chunks(4).all(|four| four == &pull[..4]) && pull[4 * COUNT] == [0.0; 4]);
         pull[..4].iter().map(|&[x, y, z, _]| Vec3A::new(x, y, z)).collect()
     }
 
-    fn bending(k: f32, c: f32, framed: bool) -> BendSolver {
-        BendSolver { k, c, framed, stages: Stages::for_rate(1.0).0 }
+    fn bending(k: f32, c: f32, framed: bool) -> BendLaw {
+        BendLaw { k, c, framed }
     }
 
     proptest! {
