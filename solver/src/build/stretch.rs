@@ -71,6 +71,9 @@ pub fn stretch(
     for (pack, batch) in topology.bend_packs.iter_mut().zip(&topology.bend_batches) {
         *pack = BendPack::new(&topology.bends[batch.range.clone()], topology.rest.len() as u32);
     }
+    if let Some(two_grid) = &mut topology.two_grid {
+        two_grid.is_stretched = true;
+    }
     // It goes by the square of the weights: the areas stay, and with them the masses.
     topology.bend_rate = built.bend_rate / if shortest < f32::INFINITY { shortest * shortest } else { 1.0 };
     if let Some((lattice, built)) = topology.lattice.as_mut().zip(built.lattice.as_ref()) {

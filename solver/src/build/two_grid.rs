@@ -147,7 +147,7 @@ fn smooth(rows: &Rows<Stiffness>, aggregates: &[u32]) -> Rows<f32> {
         }
         weights.retain(|_, weight| weight.abs() > LEAST_WEIGHT);
         let sum: f32 = weights.values().sum();
-        if !(sum > LEAST_WEIGHT) {
+        if sum.is_nan() || sum <= LEAST_WEIGHT {
             return BTreeMap::from([(aggregates[i], 1.0)]);
         }
         weights.values_mut().for_each(|weight| *weight /= sum);

@@ -43,9 +43,13 @@ use crate::{
     },
     input::{AttachedPin, Method, StepContext},
     layout::{points::Points, simd::SimdLevel},
+    linear::sparse_rows::SparseRows,
     material::Moduli,
     particles::{gathered::GatheredParticles, lanes::Lanes},
-    topology::{Topology, two_grid::TwoGrid},
+    topology::{
+        Topology,
+        two_grid::{Stiffness, TwoGrid},
+    },
 };
 
 mod direction;
@@ -121,7 +125,7 @@ impl ImplicitBuffers {
 impl<'a> ImplicitSheet<'a> {
     /// Whether this is how a step is solved: the sheet has moduli, and its mesh no rows and columns.
     pub fn is_for(topology: &Topology, ctx: &StepContext) -> bool {
-        ctx.settings.method == Method::Strands && ctx.material.moduli().is_some() && topology.two_grid.is_some()
+        ctx.settings.method != Method::Explicit && ctx.material.moduli().is_some() && topology.two_grid.is_some()
     }
 
     /// The sheet of a step, if this is how it is solved.
@@ -202,9 +206,11 @@ impl<'a> ImplicitSheet<'a> {
         let ImplicitBuffers { masses, preconditioner, free_fall, fall, inertia, .. } = &mut *buffers;
         let rigid = &mut preconditioner.rigid;
         // Who falls together isn't strained.
-        for (i, place) in now.iter_mut().enumerate().take(self.topology.particle_count()) {
-            if rigid.is_free(self.two_grid, i) {
-                place.iter_mut().zip(free_fall.to_array()).for_each(|(place, way)| *place += way);
+        if rigid.has(false) {
+            for (i, place) in now.iter_mut().enumerate().take(self.topology.particle_count()) {
+                if rigid.is_free(self.two_grid, i) {
+                    place.iter_mut().zip(free_fall.to_array()).for_each(|(place, way)| *place += way);
+                }
             }
         }
         dispatch!(level, simd => vectors::inertia(simd, now, before, &fall.way, masses, &mut inertia.way));
@@ -231,7 +237,7 @@ impl<'a> ImplicitSheet<'a> {
         dispatch!(level, simd => vectors::add_part(simd, -held, &fall.way, &mut inertia.way));
         dispatch!(level, simd => vectors::add_part(simd, -held, &fall.product, &mut inertia.product));
         inertia.go(level, [correction, residual]);
-        buffers.latest.per_curvature = 0.0;
+        buffers.latest.clear();
         for _ in 0..ITERATIONS {
             let ImplicitBuffers { masses, preconditioner, inertia, latest, residual, preconditioned, .. } =
                 &mut *buffers;
@@ -275,9 +281,8 @@ impl<'a> ImplicitSheet<'a> {
         }
         if let Some(law) = self.bend {
             dispatch!(level, simd => self.pull_bends(simd, law, now, before, gradient, frames));
-            let all = 0..topology.bend_packs.len() as u32;
-            dispatch!(level, simd => self.multiply_bends(simd, law, all, frames, inertia));
-            dispatch!(level, simd => self.multiply_bends(simd, law, held_bends.iter().copied(), frames, fall));
+            dispatch!(level, simd => self.multiply_bends(simd, law, None, frames, inertia));
+            dispatch!(level, simd => self.multiply_bends(simd, law, Some(held_bends), frames, fall));
         }
         dispatch!(level, simd => vectors::add_masses(simd, masses, &inertia.way, &mut inertia.product));
     }
@@ -290,10 +295,14 @@ impl<'a> ImplicitSheet<'a> {
         dispatch!(level, simd => face::multiply(simd, packs, faces, self.laws[0], &latest.way, &mut latest.product));
         edges.iter().for_each(|tangent| tangent.multiply(&latest.way, &mut latest.product));
         if let Some(law) = self.bend {
-            let all = 0..self.topology.bend_packs.len() as u32;
-            dispatch!(level, simd => self.multiply_bends(simd, law, all, frames, latest));
+            dispatch!(level, simd => self.multiply_bends(simd, law, None, frames, latest));
         }
         dispatch!(level, simd => vectors::add_masses(simd, masses, &latest.way, &mut latest.product));
+    }
+
+    /// The matrix of all bends, where it is constant: they have no frames, and are as they were built.
+    fn bend_matrix(&self, law: BendLaw) -> Option<&SparseRows<Stiffness>> {
+        (!law.framed && !self.two_grid.is_stretched).then_some(&self.two_grid.fine)
     }
 
     #[inline(always)]
@@ -307,6 +316,9 @@ impl<'a> ImplicitSheet<'a> {
         frames: &mut Vec<BendFrames>,
     ) {
         frames.clear();
+        if let Some(matrix) = self.bend_matrix(law) {
+            return vectors::multiply_bends(simd, matrix, law.k, now, gradient);
+        }
         for pack in &self.topology.bend_packs {
             if law.framed {
                 pull_pack::<_, true>(simd, now, before, gradient, pack, law);
@@ -317,19 +329,30 @@ impl<'a> ImplicitSheet<'a> {
         }
     }
 
+    /// Adds the second derivatives of the bends' energy times a direction: of all bends, or of some packs.
     #[inline(always)]
     fn multiply_bends<S: Simd>(
         &self,
         simd: S,
         law: BendLaw,
-        packs: impl Iterator<Item = u32>,
+        packs: Option<&[u32]>,
         frames: &[BendFrames],
         direction: &mut Direction,
     ) {
         let Direction { way, product, .. } = direction;
-        for i in packs {
-            let (i, pack) = (i as usize, &self.topology.bend_packs[i as usize]);
-            multiply_pack(simd, frames.get(i), way, product, pack, law);
+        let all = &self.topology.bend_packs;
+        match (packs, self.bend_matrix(law)) {
+            (Some(packs), _) => {
+                for &i in packs {
+                    multiply_pack(simd, frames.get(i as usize), way, product, &all[i as usize], law);
+                }
+            }
+            (None, Some(matrix)) => vectors::multiply_bends(simd, matrix, law.k, way, product),
+            (None, None) => {
+                for (i, pack) in all.iter().enumerate() {
+                    multiply_pack(simd, frames.get(i), way, product, pack, law);
+                }
+            }
         }
     }
 }

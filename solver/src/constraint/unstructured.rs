@@ -2,7 +2,7 @@
 
 use crate::{
     constraint::{
-        strand::{law::DirectionModuli, packs::StrandPackSolver},
+        strand::packs::StrandPackSolver,
         unstructured::{
             bend::{BendSolver, stages::ChebyshevBuffers},
             spring::BatchLaw,
@@ -37,7 +37,7 @@ pub(crate) struct UnstructuredPass<'a> {
 }
 
 impl UnstructuredPass<'_> {
-    /// Solves bends, faces and springs once, batch after batch, and then the strand packs. What comes last is held best: stretch
+    /// Solves bends and springs once, batch after batch, and then the strand packs. What comes last is held best: stretch
     /// shows more than bending.
     pub fn solve(
         self,
@@ -47,13 +47,11 @@ impl UnstructuredPass<'_> {
         simd_level: SimdLevel,
     ) {
         let Self { topology, material, h, with_strands, bending, strand_pack_solver } = self;
-        let grid = material.moduli().map(|moduli| DirectionModuli::both(moduli, h));
         let batches = topology.batches.iter().filter(|batch| with_strands || !batch.on_strand);
         let batches = batches.filter_map(|batch| Some((batch, BatchLaw::new(material, batch, h)?)));
         let springs = |batch: &SpringBatch| &topology.springs[batch.range.clone()];
         let count: usize = batches.clone().map(|(batch, _)| batch.range.len()).sum();
-        let only_springs =
-            strand_pack_solver.is_none() && bending.is_none() && (grid.is_none() || topology.faces.is_empty());
+        let only_springs = strand_pack_solver.is_none() && bending.is_none();
         if only_springs && count * FEW <= lanes.order.particle_count() {
             for (batch, law) in batches {
                 spring::solve_few(lanes, springs(batch), law, simd_level);
@@ -63,11 +61,6 @@ impl UnstructuredPass<'_> {
         gathered.read(lanes, material.is_damped(), simd_level);
         if let Some(bending) = bending {
             bend::solve(gathered, ways, topology, with_strands, bending, simd_level);
-        }
-        if let Some(grid) = &grid {
-            for batch in &topology.face_batches {
-                face::solve(gathered, &topology.faces[batch.clone()], grid, simd_level);
-            }
         }
         for (batch, law) in batches {
             spring::solve(gathered, springs(batch), law, simd_level);

@@ -164,12 +164,12 @@ mod tests {
             let factor = Factor::new(&pattern, |j| lower.row(j));
             let mut x: Vec<[f32; 4]> = right.iter().map(|&r| [r, -r, 0.0, 2.0 * r]).collect();
             dispatch!(SimdLevel::Best.level(), simd => factor.solve(simd, &pattern, &mut x));
-            for i in 0..COUNT {
+            for (i, right) in right.into_iter().enumerate() {
                 let sums = (0..COUNT).fold([0.0; 4], |sums: [f64; 4], j| {
                     [0, 1, 2, 3].map(|k| sums[k] + at(i, j) * f64::from(x[j][k]))
                 });
                 for (sum, share) in sums.into_iter().zip([1.0, -1.0, 0.0, 2.0]) {
-                    prop_assert!((sum - share * f64::from(right[i])).abs() < 1e-3, "{sum} {}", right[i]);
+                    prop_assert!((sum - share * f64::from(right)).abs() < 1e-3, "{sum} {right}");
                 }
             }
         }

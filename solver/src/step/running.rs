@@ -144,21 +144,22 @@ impl<'a> Running<'a> {
         let goes_on = i + 1 < self.substeps && ctx.grabs.is_empty() && !is_renewed;
         self.has_moved = goes_on && ctx.settings.method != Method::Explicit;
         self.is_finished = false;
-        match ctx.settings.method {
-            Method::Strands => {
+        match (substep.implicit, ctx.settings.method) {
+            (Some(sheet), _) => {
                 grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
-                match substep.implicit {
-                    Some(sheet) => substep.solve_implicit(sheet, scratch),
-                    None => self.is_finished = substep.solve_strands(scratch, self.has_moved),
-                }
+                substep.solve_implicit(sheet, scratch);
             }
-            Method::Xpbd => {
+            (None, Method::Strands) => {
+                grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
+                self.is_finished = substep.solve_strands(scratch, self.has_moved);
+            }
+            (None, Method::Xpbd) => {
                 substep.solve_springs(scratch);
                 grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
                 // After the hands: where both can't hold, pins are stronger.
                 substep.solve_tethers(scratch);
             }
-            Method::Explicit => grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h),
+            (None, Method::Explicit) => grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h),
         }
         let Scratch { lanes, body_attachments, .. } = &mut **scratch;
         body_attachments.settle(lanes, ctx, substep.h);

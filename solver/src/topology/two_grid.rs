@@ -26,6 +26,8 @@ pub struct TwoGrid {
     pub component: Vec<u32>,
     /// Number of connected components.
     pub component_count: usize,
+    /// Whether the cloth is scaled since: what joins the particles is then roughly what it was.
+    pub is_stretched: bool,
     pub(crate) factors: Mutex<Vec<Arc<CoarseFactor>>>,
 }
 
@@ -38,6 +40,7 @@ impl Clone for TwoGrid {
             factor_pattern: self.factor_pattern.clone(),
             component: self.component.clone(),
             component_count: self.component_count,
+            is_stretched: self.is_stretched,
             factors: Mutex::default(),
         }
     }

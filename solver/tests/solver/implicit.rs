@@ -1,6 +1,6 @@
 //! Implicit steps of sheets on any triangles: no energy but what was put in, and rest.
 
-use bevy_math::{Vec3, Vec3A};
+use bevy_math::{Vec3, Vec3A, ops};
 use drape_solver::{Elasticity, Material, Moduli, Scratch, SourceMesh, Topology, measure};
 use proptest::prelude::*;
 
@@ -44,7 +44,7 @@ fn flag(side: u32, share: f32, material: Material) -> Bed {
     let mut bed = bed.pinned(pins);
     for (place, w) in bed.particles.position.iter_mut().zip(&bed.particles.inverse_mass) {
         if *w > 0.0 {
-            place.z += 1e-3 * (7.0 * place.x + 3.0 * place.y).sin();
+            place.z += 1e-3 * ops::sin(7.0 * place.x + 3.0 * place.y);
         }
     }
     bed

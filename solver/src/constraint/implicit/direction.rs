@@ -16,6 +16,13 @@ pub(super) struct Direction {
 }
 
 impl Direction {
+    /// Leads nowhere.
+    pub fn clear(&mut self) {
+        self.way.fill([0.0; 4]);
+        self.product.fill([0.0; 4]);
+        self.per_curvature = 0.0;
+    }
+
     /// How far to go along it, as a share of it.
     pub fn step(&mut self, level: Level, residual: &[[f32; 4]]) -> f32 {
         let Self { way, product, per_curvature } = self;

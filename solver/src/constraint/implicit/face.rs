@@ -214,3 +214,111 @@ impl<S: Simd> WideTangent<S> {
         [u * (eu * ku + ev * g) + v * (shear * lv) + du * tu, v * (ev * kv + eu * g) + u * (shear * lu) + dv * tv]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use bevy_math::Vec3A;
+    use fearless_simd::dispatch;
+    use proptest::{collection, prop_assert, prop_assert_eq, proptest, test_runner::Config};
+
+    use super::*;
+    use crate::{
+        constraint::unstructured::face::{
+            FaceStrain,
+            tests::{FACE, JERSEY, state},
+        },
+        layout::simd::SimdLevel,
+        material::Moduli,
+        topology::Face,
+    };
+
+    const H: f32 = 0.01;
+
+    /// Eleven copies of the face, each at corners of its own, in two packs.
+    fn packs() -> Vec<FacePack> {
+        let face = |i: u32| Face { particles: [3 * i, 3 * i + 1, 3 * i + 2], ..FACE };
+        let faces: Vec<Face> = (0..11).map(face).collect();
+        faces.chunks(8).map(|faces| FacePack::new(faces, 33)).collect()
+    }
+
+    fn list(points: [Vec3A; 3]) -> Vec<[f32; 4]> {
+        let points = points.map(|p| [p.x, p.y, p.z, 1.0]);
+        points.into_iter().cycle().take(33).chain([[0.0; 4]]).collect()
+    }
+
+    fn points(list: &[[f32; 4]]) -> [Vec3A; 3] {
+        assert!(list[..33].chunks(3).all(|three| three == &list[..3]) && list[33] == [0.0; 4]);
+        [0, 1, 2].map(|i| Vec3A::from_slice(&list[i]))
+    }
+
+    /// Gradient and product with a direction, N and N, of the corners of one face.
+    fn linearised(
+        corners: [Vec3A; 3],
+        before: [Vec3A; 3],
+        direction: [Vec3A; 3],
+        moduli: &Moduli,
+        simd_level: SimdLevel,
+    ) -> [[Vec3A; 3]; 2] {
+        let (packs, laws) = (packs(), DirectionModuli::both(moduli, H));
+        let (now, before, inertia) = (list(corners), list(before), list(direction));
+        let (mut gradient, mut product, mut tangents) = (vec![[0.0; 4]; 34], vec![[0.0; 4]; 34], Vec::new());
+        let places = Places { now: &now, before: &before, inertia: &inertia };
+        let sums = Sums { gradient: &mut gradient, product: &mut product };
+        dispatch!(simd_level.level(), simd => {
+            if moduli.stretch_damping > 0.0 {
+                linearise::<_, true>(simd, &packs, &laws, places, sums, &mut tangents);
+            } else {
+                linearise::<_, false>(simd, &packs, &laws, places, sums, &mut tangents);
+            }
+        });
+        let mut again = vec![[0.0; 4]; 34];
+        dispatch!(simd_level.level(), simd => multiply(simd, &packs, &tangents, laws[0], &inertia, &mut again));
+        assert_eq!(again, product, "the product that is made on the way is that of the tangents");
+        [points(&gradient), points(&product)].map(|of| of.map(|p| p / (H * H)))
+    }
+
+    proptest! {
+        #![proptest_config(Config { failure_persistence: None, ..Config::default() })]
+
+        #[test]
+        fn the_gradient_is_the_force_of_the_textbook_and_the_product_symmetric(
+            noise in collection::vec(-1.0_f32..1.0, 36),
+        ) {
+            let (corners, velocities) = state(&noise);
+            let before = [0, 1, 2].map(|i| corners[i] - velocities[i] * H);
+            let (one, _) = state(&noise[9..]);
+            let (other, _) = state(&noise[18..]);
+            let [gradient, product] = linearised(corners, before, one, &JERSEY, SimdLevel::Best);
+            let rates = FaceStrain::new(&FACE, velocities);
+            let [b, c] = FaceStrain::new(&FACE, corners).forces(&FACE, &JERSEY, &rates, f32::MAX);
+            let size = 1.0 + b.length() + c.length();
+            for (gradient, force) in gradient.into_iter().zip([-(b + c), b, c]) {
+                prop_assert!((gradient + force).length() < 1e-3 * size, "{gradient} {force}");
+            }
+            let [_, back] = linearised(corners, before, other, &JERSEY, SimdLevel::Best);
+            let dot = |p: &[Vec3A; 3], q: &[Vec3A; 3]| p.iter().zip(q).map(|(p, q)| p.dot(*q)).sum::<f32>();
+            let (there, back, stiffness) = (dot(&product, &other), dot(&back, &one), dot(&product, &one));
+            prop_assert!((there - back).abs() < 1e-3 * (1.0 + there.abs()), "{there} {back}");
+            prop_assert!(stiffness > -1e-3, "{stiffness}");
+            let baseline = linearised(corners, before, one, &JERSEY, SimdLevel::Baseline);
+            prop_assert_eq!(baseline, [gradient, product]);
+        }
+    }
+
+    #[test]
+    fn the_product_is_the_slope_of_the_gradient_where_the_cloth_is_taut_and_square() {
+        let moduli = Moduli { stretch_damping: 0.0, ..JERSEY };
+        let corners = [Vec3A::ZERO, Vec3A::X * 1.1, Vec3A::X * 0.33 + Vec3A::Y * 0.96];
+        let way = [Vec3A::new(0.1, 0.4, -0.7), Vec3A::new(-0.3, 0.2, 0.5), Vec3A::new(0.6, -0.1, 0.3)];
+        let gradient = |share: f32| {
+            let moved = [0, 1, 2].map(|i| corners[i] + way[i] * share);
+            linearised(moved, moved, way, &moduli, SimdLevel::Best)[0]
+        };
+        let [_, product] = linearised(corners, corners, way, &moduli, SimdLevel::Best);
+        let (more, less) = (gradient(1e-3), gradient(-1e-3));
+        for i in 0..3 {
+            let slope = (more[i] - less[i]) / 2e-3;
+            assert!((slope - product[i]).length() < 0.01 * product[i].length(), "{slope} {}", product[i]);
+        }
+    }
+}

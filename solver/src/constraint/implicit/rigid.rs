@@ -64,6 +64,11 @@ impl RigidMotions {
         !self.components[two_grid.component[particle] as usize].is_held
     }
 
+    /// Whether any component is `held`, or free.
+    pub fn has(&self, held: bool) -> bool {
+        self.components.iter().any(|component| component.is_held == held)
+    }
+
     /// Begins a substep, with particles at `now`, m.
     pub fn begin(&mut self, two_grid: &TwoGrid, now: &[[f32; 4]], masses: &Masses) {
         let Self { components, arms } = self;
@@ -137,12 +142,18 @@ impl RigidMotions {
 
     /// Adds what the held components do under the residual to ways.
     pub fn add_held(&mut self, two_grid: &TwoGrid, residual: &[[f32; 4]], ways: &mut [[f32; 4]]) {
+        if !self.has(true) {
+            return;
+        }
         self.respond(two_grid, |i| point(&residual[i]));
         self.move_by(two_grid, true, 1.0, |i, more| ways[i] = extended(point(&ways[i]) + more));
     }
 
     /// Takes the rigid motions of free components from ways, of which nothing else is left in the masses' inner product.
     pub fn remove_free(&mut self, two_grid: &TwoGrid, masses: &Masses, ways: &mut [[f32; 4]]) {
+        if !self.has(false) {
+            return;
+        }
         self.respond(two_grid, |i| point(&ways[i]) * masses.mass[i][0]);
         self.move_by(two_grid, false, -1.0, |i, more| ways[i] = extended(point(&ways[i]) + more));
     }

@@ -7,8 +7,9 @@ use fearless_simd::{f32x4, f32x8, prelude::*};
 
 use crate::{
     layout::{points::Points, simd::LANES},
+    linear::sparse_rows::SparseRows,
     particles::lanes::Lanes,
-    topology::Topology,
+    topology::{Topology, two_grid::Stiffness},
 };
 
 /// A particle that is so many times as heavy as its share of the cloth is held: by a pin, a hand or a body.
@@ -170,7 +171,41 @@ pub(super) fn go(ways: &[[f32; 4]], most: f32, places: &mut [[f32; 4]]) {
     }
 }
 
-/// A point times a number.
+/// Adds `k` times the matrix of all bends times a vector, whatever that is for all particles alike.
+#[inline(always)]
+pub(super) fn multiply_bends<S: Simd>(
+    simd: S,
+    matrix: &SparseRows<Stiffness>,
+    k: f32,
+    vector: &[[f32; 4]],
+    product: &mut [[f32; 4]],
+) {
+    let nothing = f32x4::splat(simd, 0.0);
+    for (i, product) in product.iter_mut().enumerate().take(matrix.len()) {
+        let here = four(simd, &vector[i]);
+        // By turns, so that a sum doesn't wait for the one before. Rows add up to zero: with differences, numbers are small
+        // wherever the cloth is.
+        let mut sums = [nothing; 4];
+        let range = matrix.range(i);
+        let (columns, values) = (matrix.columns(i), &matrix.values()[range]);
+        let (fours, rest) = columns.as_chunks::<4>();
+        let (values_of_fours, values_of_rest) = values.as_chunks::<4>();
+        for (j, stiffness) in fours.iter().zip(values_of_fours) {
+            sums[0] += (four(simd, &vector[j[0] as usize]) - here) * stiffness[0].bend;
+            sums[1] += (four(simd, &vector[j[1] as usize]) - here) * stiffness[1].bend;
+            sums[2] += (four(simd, &vector[j[2] as usize]) - here) * stiffness[2].bend;
+            sums[3] += (four(simd, &vector[j[3] as usize]) - here) * stiffness[3].bend;
+        }
+        for (j, stiffness) in rest.iter().zip(values_of_rest) {
+            sums[0] += (four(simd, &vector[*j as usize]) - here) * stiffness.bend;
+        }
+        let sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        let [x, y, z, _] = (four(simd, product) + sum * k).into();
+        *product = [x, y, z, 0.0];
+    }
+}
+
+/// A point in a register.
 #[inline(always)]
 pub(super) fn four<S: Simd>(simd: S, point: &[f32; 4]) -> f32x4<S> {
     f32x4::simd_from(simd, *point)
