@@ -24,11 +24,13 @@ pub(crate) use in_force::InForce;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub enum ClothSolver {
-    /// Solves each strand of a regular mesh exactly, and coarse levels for the long waves: the least stretch for the time
-    /// that it takes, stable at any stiffness and time step. For games.
+    /// Solves each strand of rows and columns exactly, and coarse levels for the long waves: the least stretch for the time
+    /// that it takes, stable at any stiffness and time step. Fabrics on all other triangles take implicit steps, which gain no
+    /// energy. For games.
     #[default]
     Strands,
-    /// Extended position-based dynamics (XPBD), one constraint after the other: stable as well, and stretched more.
+    /// Extended position-based dynamics (XPBD), one constraint after the other: stable as well, and stretched more. Fabrics on
+    /// triangles without rows and columns take implicit steps here too.
     Xpbd,
     /// Forces and symplectic Euler, the textbook form: the most accurate, and many times as costly. It takes the
     /// substeps that stability needs, up to [`Cloth::max_substeps`].
@@ -73,10 +75,11 @@ pub struct Cloth {
     /// Substeps per step, 1 to 10 000, `None` by default: as many as it takes. 2 to 8 for strands, 8 and more for XPBD. Twice
     /// as many cost twice the time and let cloth stretch half to a third as much.
     ///
-    /// `None` is for as many as [`max_strain`](Self::max_strain) needs; on a mesh without rows and
-    /// columns at least 8, three for each ten vertices along a side, and up to 32 where triangles are narrow; at least 8 near
-    /// obstacles, in a hand and without tethers; half as many more with [`SelfCollision::Robust`], 16 at least; three times
-    /// as many, 32 at least, near solids with edges, and thin ones, and twice that near tips. With [`ClothSolver::Xpbd`] for 8.
+    /// `None` is for as many as [`max_strain`](Self::max_strain) needs, 4 by default for implicit steps; with
+    /// [`ClothSprings`](crate::prelude::ClothSprings) on a mesh without rows and columns at least 8, three for each ten vertices
+    /// along a side, and up to 32 where triangles are narrow; at least 8 near obstacles, in a hand and without tethers; half as
+    /// many more with [`SelfCollision::Robust`], 16 at least; three times as many, 32 at least, near solids with edges, and thin
+    /// ones, and twice that near tips. With [`ClothSolver::Xpbd`] for 8.
     #[reflect(@Parameter::within("", (1.0, 10_000.0), (1.0, 64.0)).whole().entered((1.0, 1000.0)))]
     pub substeps: Option<u32>,
     /// Multigrid passes of [`ClothSolver::Strands`] in each substep: stride and iterations of each coarse level. Only cloth

@@ -146,9 +146,12 @@ impl ClothState {
     }
 
     /// What the cloth's mesh was found to be, by which [`ClothSolver::Strands`](crate::prelude::ClothSolver::Strands) goes: rows
-    /// and columns, strands, or springs one by one. None until the cloth is ready.
+    /// and columns; triangles that take implicit steps; with [`ClothSprings`](crate::prelude::ClothSprings) strands, or springs
+    /// one by one. None until the cloth is ready.
     pub fn structure(&self) -> Option<MeshStructure> {
-        (!self.particles.is_empty()).then(|| self.topology.structure())
+        let is_sheet = self.material.is_some_and(|material| material.moduli().is_some());
+        let found = || if is_sheet { self.topology.structure_of_sheet() } else { self.topology.structure() };
+        (!self.particles.is_empty()).then(found)
     }
 
     /// How far the cloth is stretched along its springs, no unit. Computed anew.

@@ -37,7 +37,7 @@ pub fn woven(images: &mut Assets<Image>, colour: Color, threads_per_tile: u32) -
     let threads = even(threads_per_tile);
     let colour = colour.to_linear().to_vec3();
     images.add(tile(texels(threads), Texels::Colours, |u, v| {
-        let weave = MeshStructure::at(u * threads as f32, v * threads as f32);
+        let weave = Weave::at(u * threads as f32, v * threads as f32);
         // The gaps between the threads lie in their shadow.
         let light = 0.65 + 0.55 * weave.height;
         (colour * light * weave.dye(threads)).clamp(Vec3::ZERO, Vec3::ONE)
@@ -50,7 +50,7 @@ pub fn woven_normals(images: &mut Assets<Image>, threads_per_tile: u32) -> Handl
     let step = 0.5 / TEXELS_PER_THREAD as f32;
     images.add(tile(texels(threads), Texels::Normals, |u, v| {
         let (x, y) = (u * threads as f32, v * threads as f32);
-        let height = |x: f32, y: f32| RELIEF * MeshStructure::at(x, y).height;
+        let height = |x: f32, y: f32| RELIEF * Weave::at(x, y).height;
         let slope_x = (height(x + step, y) - height(x - step, y)) / (2.0 * step);
         let slope_y = (height(x, y + step) - height(x, y - step)) / (2.0 * step);
         // V points down in the texture and up in Bevy's tangent space.
@@ -68,7 +68,7 @@ fn texels(threads: u32) -> u32 {
 }
 
 /// The thread on top at a point of the cloth.
-struct MeshStructure {
+struct Weave {
     /// From 0 in the gaps to 1 on the crests.
     height: f32,
     /// Whether the thread runs along v.
@@ -79,7 +79,7 @@ struct MeshStructure {
     along: f32,
 }
 
-impl MeshStructure {
+impl Weave {
     /// `x` and `y` in thread widths.
     fn at(x: f32, y: f32) -> Self {
         let (column, row) = (x.floor(), y.floor());

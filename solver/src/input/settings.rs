@@ -6,10 +6,12 @@ use crate::input::{CollisionFilter, SelfCollision, SubstepPolicy};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// Extended position-based dynamics, with each strand of a regular mesh solved exactly and coarse levels for the long
-    /// waves: stable at any stiffness, and stretched least.
+    /// waves: stable at any stiffness, and stretched least. Sheets with moduli on meshes without rows and columns take linearised
+    /// implicit steps instead.
     #[default]
     Strands,
-    /// Extended position-based dynamics, spring by spring in colours: stable at any stiffness.
+    /// Extended position-based dynamics, spring by spring in colours: stable at any stiffness. Sheets without rows and columns as
+    /// with [`Strands`](Self::Strands).
     Xpbd,
     /// Forces and symplectic Euler, the textbook form: accurate, and costly where springs are stiff.
     Explicit,

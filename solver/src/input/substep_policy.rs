@@ -98,7 +98,7 @@ impl SubstepPolicy {
         let without = match topology.structure() {
             MeshStructure::Grid { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH),
             MeshStructure::Strands { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH_ON_STRANDS),
-            MeshStructure::Unstructured { .. } => f32::INFINITY,
+            MeshStructure::Triangles { .. } | MeshStructure::Unstructured { .. } => f32::INFINITY,
         };
         let with_levels = without > Self::MOST_WITHOUT_LEVELS;
         let of_64 = if without < f32::INFINITY { Self::STRAIN_WITH_LEVELS } else { Self::LOOSE_STRAIN };

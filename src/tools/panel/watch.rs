@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     cloth::{Cloth, ClothSolver, InForce},
-    solver::Strain,
+    solver::{MeshStructure, Strain},
     state::{ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus},
     surroundings::ClothGravity,
 };
@@ -121,7 +121,11 @@ fn structure(state: &ClothState) -> String {
         1 => "1 level".into(),
         count => format!("{count} levels"),
     };
-    state.structure().map_or_else(String::new, |structure| format!("{structure}, {levels}"))
+    match state.structure() {
+        None => String::new(),
+        Some(structure @ MeshStructure::Triangles { .. }) => structure.to_string(),
+        Some(structure) => format!("{structure}, {levels}"),
+    }
 }
 
 fn situation(cloth: &Observed, watch: &Watch) -> Option<Situation> {
