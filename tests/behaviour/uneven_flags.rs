@@ -23,7 +23,7 @@ fn an_uneven_flag_that_is_pulled_in_its_plane_comes_to_rest() {
     let flags = [(24, 0.1, 15.0), (24, 0.25, 15.0), (64, 0.25, 6.0)];
     let found = flags.map(|(side, share, seconds)| at_rest(side, share, seconds));
     for [speed, strain] in found {
-        assert!(strain < 0.01 && speed < 0.01, "speeds and strains of {flags:?}: {found:?}");
+        assert!(strain < 0.012 && speed < 0.01, "speeds and strains of {flags:?}: {found:?}");
     }
 }
 

@@ -217,7 +217,9 @@ impl<'a> ImplicitSheet<'a> {
         rigid.begin(self.two_grid, now, masses);
         rigid.remove_free(self.two_grid, masses, &mut inertia.way);
         self.linearise(level, now, before, buffers);
-        buffers.preconditioner.rigid.hold(self, now, &buffers.faces, &buffers.held_faces);
+        let ImplicitBuffers { preconditioner, faces, held_faces, .. } = &mut *buffers;
+        let held = held_faces.iter().map(|&i| (&self.topology.face_packs[i as usize], &faces[i as usize]));
+        preconditioner.rigid.hold(self.two_grid, now, held, face::coupling(self.laws[0]));
         let ImplicitBuffers { masses, preconditioner, fall, inertia, residual, gradient, correction, .. } =
             &mut *buffers;
         // Begins with the fall: the masses times it are the gravity that is left to be done.

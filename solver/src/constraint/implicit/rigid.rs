@@ -10,13 +10,9 @@
 use bevy_math::{Vec3A, Vec4};
 
 use crate::{
-    constraint::implicit::{
-        ImplicitSheet,
-        face::{FaceTangent, coupling},
-        vectors::Masses,
-    },
+    constraint::implicit::{face::FaceTangent, vectors::Masses},
     layout::simd::LANES,
-    topology::two_grid::TwoGrid,
+    topology::{face_pack::FacePack, two_grid::TwoGrid},
 };
 
 /// Added to the diagonal, as a share of it: a component in one line has no inertia about it.
@@ -99,11 +95,16 @@ impl RigidMotions {
         self.invert(false);
     }
 
-    /// Adds the stiffness of the `packs` of faces that hold the components.
-    pub fn hold(&mut self, sheet: &ImplicitSheet, now: &[[f32; 4]], faces: &[FaceTangent], packs: &[u32]) {
+    /// Adds the stiffness of the `packs` of faces that hold the components, with their tangents and a `coupling` of G h², kg.
+    pub fn hold<'a>(
+        &mut self,
+        two_grid: &TwoGrid,
+        now: &[[f32; 4]],
+        packs: impl Iterator<Item = (&'a FacePack, &'a FaceTangent)>,
+        coupling: f32,
+    ) {
         let Self { components, arms } = self;
-        for &number in packs {
-            let (pack, tangent) = (&sheet.topology.face_packs[number as usize], &faces[number as usize]);
+        for (pack, tangent) in packs {
             for lane in 0..LANES {
                 let corners = pack.particles.map(|corners| corners[lane] as usize);
                 if pack.area[lane] == 0.0 {
@@ -114,12 +115,12 @@ impl RigidMotions {
                 let slope = |[b, c]: [f32; 2]| b * (is_moved[1] - is_moved[0]) + c * (is_moved[2] - is_moved[0]);
                 let by_u = slope(pack.warp.map(|lanes| lanes[lane]));
                 let by_v = slope(pack.weft.map(|lanes| lanes[lane]));
-                let component = &mut components[sheet.two_grid.component[corners[0]] as usize];
+                let component = &mut components[two_grid.component[corners[0]] as usize];
                 let middle = corners.iter().map(|&i| point(&now[i])).sum::<Vec3A>() / 3.0;
                 let [u, v] = tangent.along.map(|axes| Vec3A::from_array(axes.map(|lanes| lanes[lane])));
                 let [[lu, lv], [ku, kv], [tu, tv]] =
                     [tangent.length, tangent.stiffness, tangent.tension].map(|both| both.map(|lanes| lanes[lane]));
-                let g = pack.area[lane] * coupling(sheet.laws[0]);
+                let g = pack.area[lane] * coupling;
                 let stress = |way: Vec3A| {
                     let (du, dv) = (way * by_u, way * by_v);
                     let (eu, ev) = (u.dot(du), v.dot(dv));
