@@ -47,7 +47,7 @@
 //! Any triangle mesh will do, from code or glTF, indexed or not. Vertices that share a position move as one particle
 //! and stay several vertices. Meshes that load late become cloth when they arrive, meshes that change are rebuilt, and
 //! the mesh asset is copied for each cloth. In a loaded scene, insert `Cloth` on the entity that has the `Mesh3d`.
-//! Strands hold a mesh best that is one rectangle or tube of quads, triangulated or not:
+//! Cloth takes least time on a mesh that is one rectangle or tube of quads, triangulated or not:
 //! [`ClothGrid`](prelude::ClothGrid) makes such.
 //!
 //! # Fabrics

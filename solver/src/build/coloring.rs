@@ -1,4 +1,4 @@
-//! Sorts springs, faces and bends into colours: no two of one colour share a particle.
+//! Sorts springs and bends into colours, and faces and bends into runs of eight: no two of a colour or run share a particle.
 //!
 //! Within a colour the order doesn't matter, so it may run side by side, and sweeping colour after colour carries no
 //! direction of the mesh into the cloth.

@@ -46,20 +46,9 @@ pub(super) fn find(areas: &[f32], faces: &[Face], springs: &[Spring], bends: &[B
     }
     let coarse = packed(lower);
     let (component, component_count) = components(&rows);
-    TwoGrid {
-        interpolation: packed(
-            interpolation
-                .into_iter()
-                .map(|row| row.into_iter().map(|(to, w)| (number[to as usize], w)).collect())
-                .collect(),
-        ),
-        fine: packed(rows),
-        factor_pattern: cholesky::pattern(&coarse),
-        coarse,
-        component,
-        component_count,
-        ..TwoGrid::default()
-    }
+    let renumbered = |row: BTreeMap<u32, f32>| row.into_iter().map(|(to, w)| (number[to as usize], w)).collect();
+    let interpolation = packed(interpolation.into_iter().map(renumbered).collect());
+    TwoGrid::new(packed(rows), interpolation, coarse, component, component_count)
 }
 
 fn packed<T: Copy>(rows: Rows<T>) -> SparseRows<T> {

@@ -10,7 +10,8 @@
 //!
 //! (M + h² K) d = h² (loads - gradient - h² K g)
 //!
-//! K is without what would make it indefinite: all but the tension's own stiffness of what a triangle's turn adds.
+//! Where cloth is pressed together, the second derivatives have a negative part, which would make the system indefinite. K leaves
+//! it out: of what turning a triangle costs, it has only the part of its tension.
 //!
 //! **Energy.** Two iterations of conjugate gradients leave an error, and one that starts from y can feed motion: a stiff wave
 //! that the substep has set in motion is turned back by more than its share, and agitates the cloth for ever. So the way y - x
@@ -62,9 +63,10 @@ mod vectors;
 /// Iterations of conjugate gradients in a substep.
 const ITERATIONS: usize = 2;
 
-/// How many times the share of its way that a cloth doesn't get to go counts as held. Cloth that swings freely falls almost
-/// all the way, and lags 3 cm instead of 5 cm after half a second where that is along its direction; where the cloth hangs, it
-/// creeps for minutes.
+/// Cloth counts as held where its stress undoes this much, or more, of the way y - x: one over it, no unit.
+///
+/// Where it swings, its free fall is best a part of that way: after half a second it lags 3 cm instead of 5 cm. Where it hangs,
+/// undoing the fall would undo its motion too, and it would creep for minutes. The line between them is wide: 4 creeps.
 const HELD: f32 = 16.0;
 
 /// A sheet that is solved by implicit steps, and what its substeps have in common.
@@ -72,6 +74,7 @@ const HELD: f32 = 16.0;
 pub(crate) struct ImplicitSheet<'a> {
     topology: &'a Topology,
     two_grid: &'a TwoGrid,
+    moduli: &'a Moduli,
     laws: [DirectionModuli; 2],
     bend: Option<BendLaw>,
     /// Duration of a substep, s.
@@ -129,23 +132,25 @@ impl<'a> ImplicitSheet<'a> {
     }
 
     /// The sheet of a step, if this is how it is solved.
-    pub fn new(topology: &'a Topology, ctx: &StepContext, h: f32) -> Option<Self> {
-        if !Self::is_for(topology, ctx) {
-            return None;
-        }
+    pub fn new(topology: &'a Topology, ctx: &'a StepContext, h: f32) -> Option<Self> {
         let (moduli, two_grid) = ctx.material.moduli().zip(topology.two_grid.as_ref())?;
-        let laws = DirectionModuli::both(moduli, h);
-        let farthest = FARTHEST * ctx.settings.max_velocity * h;
-        Some(Self { farthest, topology, two_grid, laws, bend: BendLaw::new(topology, &ctx.material, h), h })
+        Self::is_for(topology, ctx).then(|| Self {
+            topology,
+            two_grid,
+            moduli,
+            laws: DirectionModuli::both(moduli, h),
+            bend: BendLaw::new(topology, &ctx.material, h),
+            h,
+            farthest: FARTHEST * ctx.settings.max_velocity * h,
+        })
     }
 
     /// Prepares for the substeps of a step: masses, and the factor of the coarse matrix.
     pub fn prepare(&self, lanes: &Lanes, ctx: &StepContext, buffers: &mut ImplicitBuffers) {
-        let Some(moduli) = ctx.material.moduli() else { return };
         // One more: nobody. An even number: two to a register of eight.
         buffers.fit((lanes.order.particle_count() + 1).next_multiple_of(2));
         buffers.masses.read(lanes, self.topology, ctx.material.density);
-        let [stretch, bend] = stiffness(moduli, self.h);
+        let [stretch, bend] = stiffness(self.moduli, self.h);
         buffers.preconditioner.prepare(self.two_grid, &buffers.masses, ctx.material.density, stretch, bend);
         let ImplicitBuffers { masses, preconditioner, held_faces, held_bends, fall, free_fall, .. } = &mut *buffers;
         let attached = |pin: &AttachedPin| ctx.pin_motions[pin.pin_motion as usize].particle;
@@ -253,8 +258,8 @@ impl<'a> ImplicitSheet<'a> {
         vectors::go(&buffers.correction, self.farthest, now);
     }
 
-    /// The gradient of the energy at y, what its second derivatives are made of, and their product with the way of the
-    /// substep.
+    /// The gradient of the energy at x + h v, what its second derivatives are made of, and their products with the way y - x and
+    /// with the fall.
     fn linearise(&self, level: Level, now: &[[f32; 4]], before: &[[f32; 4]], buffers: &mut ImplicitBuffers) {
         let Self { topology, laws, .. } = self;
         let ImplicitBuffers { masses, faces, edges, frames, held_faces, held_bends, fall, inertia, gradient, .. } =

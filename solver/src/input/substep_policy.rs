@@ -71,9 +71,8 @@ impl SubstepPolicy {
     /// Strain of one substep with levels and without strands, which all but one in a hundred springs stay below.
     const LOOSE_STRAIN: f32 = 0.04;
 
-    /// With fewer, triangles that are solved one after the other feed energy into a cloth that is pulled in its plane. Flags of
-    /// 24 x 24 and 64 x 64 vertices, moved by up to a quarter of a cell, come to rest with these, strained by less than 5 % (99
-    /// of 100 sides): a test asks for that.
+    /// With fewer, plain springs on triangles, which are solved one after the other, feed energy into a cloth that is pulled in its
+    /// plane.
     const LEAST_ON_TRIANGLES: f32 = 8.0;
 
     /// Fewest substeps on triangles for each particle along a side.

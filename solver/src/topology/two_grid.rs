@@ -1,22 +1,26 @@
 //! The two grids of a mesh without rows and columns: its particles, and a coarse grid of aggregates.
 //!
-//! All matrices are those of one number a particle: what the implicit solver has as a
-//! preconditioner doesn't tell directions apart.
+//! All matrices are those of one number a particle: the implicit solver's preconditioner doesn't tell directions apart.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::linear::{cholesky::Factor, sparse_rows::SparseRows};
+use crate::linear::{
+    cholesky::{self, Factor},
+    sparse_rows::SparseRows,
+};
 
 /// Factors that are kept: those of the substeps in use, with some sets of pins.
 const KEPT_FACTORS: usize = 8;
 
 /// Particles, aggregates, and what is between them.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TwoGrid {
     /// From values at the aggregates to values at the particles: a row a particle, whose weights add up to one.
     pub interpolation: SparseRows<f32>,
     /// What joins the particles: symmetric, a row a particle.
     pub fine: SparseRows<Stiffness>,
+    /// Its diagonal, which each step asks for.
+    pub diagonal: Vec<Stiffness>,
     /// Areas of the particles, m², and what joins them, interpolated: the lower triangle, a row a column of it, in the order in
     /// which the aggregates are eliminated.
     pub coarse: SparseRows<(f32, Stiffness)>,
@@ -28,31 +32,23 @@ pub struct TwoGrid {
     pub component_count: usize,
     /// Whether the cloth is scaled since: what joins the particles is then roughly what it was.
     pub is_stretched: bool,
-    pub(crate) factors: Mutex<Vec<Arc<CoarseFactor>>>,
+    factors: FactorCache,
 }
 
-impl Clone for TwoGrid {
+/// Factors of the coarse matrix, kept for all cloths of a topology. They follow from the grids, so that a copy begins without any,
+/// and they make no grids different.
+#[derive(Debug, Default)]
+struct FactorCache(Mutex<Vec<Arc<CoarseFactor>>>);
+
+impl Clone for FactorCache {
     fn clone(&self) -> Self {
-        Self {
-            interpolation: self.interpolation.clone(),
-            fine: self.fine.clone(),
-            coarse: self.coarse.clone(),
-            factor_pattern: self.factor_pattern.clone(),
-            component: self.component.clone(),
-            component_count: self.component_count,
-            is_stretched: self.is_stretched,
-            factors: Mutex::default(),
-        }
+        Self::default()
     }
 }
 
-/// Factors are no part of it: they follow from the rest.
-impl PartialEq for TwoGrid {
-    fn eq(&self, other: &Self) -> bool {
-        self.interpolation == other.interpolation
-            && self.fine == other.fine
-            && self.coarse == other.coarse
-            && self.component == other.component
+impl PartialEq for FactorCache {
+    fn eq(&self, _: &Self) -> bool {
+        true
     }
 }
 
@@ -99,13 +95,35 @@ pub(crate) struct CoarseFactor {
 }
 
 impl TwoGrid {
+    /// Grids of a cloth as it was built, without any factor yet.
+    pub(crate) fn new(
+        fine: SparseRows<Stiffness>,
+        interpolation: SparseRows<f32>,
+        coarse: SparseRows<(f32, Stiffness)>,
+        component: Vec<u32>,
+        component_count: usize,
+    ) -> Self {
+        let diagonal = |i: usize| fine.get(i, i).unwrap_or_default();
+        Self {
+            diagonal: (0..fine.len()).map(diagonal).collect(),
+            factor_pattern: cholesky::pattern(&coarse),
+            interpolation,
+            fine,
+            coarse,
+            component,
+            component_count,
+            is_stretched: false,
+            factors: FactorCache::default(),
+        }
+    }
+
     /// The factor of Pᵀ (A + rate K) P, where particles that are `held` have no row in P: the one that is kept, or a new one.
     ///
     /// Allocates where there is none yet.
     pub(crate) fn factor(&self, rate: Rate, held: &[u32]) -> Arc<CoarseFactor> {
         let rate = rate.rounded();
         // A panic elsewhere leaves a list that is as good as any.
-        let mut factors = self.factors.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut factors = self.factors.0.lock().unwrap_or_else(PoisonError::into_inner);
         let known = factors.iter().position(|factor| factor.rate == rate && factor.held == held);
         let factor = match known {
             Some(known) => factors.remove(known),

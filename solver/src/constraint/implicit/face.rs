@@ -11,6 +11,7 @@
 //! squares, and T/|u| across u, which is what holds a taut cloth. Where the cloth is pressed together that would be negative,
 //! and is left out.
 
+use bevy_math::Vec3A;
 use fearless_simd::{f32x8, prelude::*};
 
 use crate::{
@@ -31,6 +32,23 @@ pub(super) struct FaceTangent {
     pub stiffness: [Lane; 2],
     /// Stiffness of their tension, kg m².
     pub tension: [Lane; 2],
+}
+
+impl FaceTangent {
+    /// What the face in a lane answers with to a `way` of those of its corners that go along: these have the slopes `by_u` and
+    /// `by_v` (1/m) along warp and weft, and `g` is G h² times its area, kg m². The same as
+    /// [`WideTangent::multiply`], for one.
+    pub fn resist(&self, lane: usize, way: Vec3A, [by_u, by_v]: [f32; 2], g: f32) -> Vec3A {
+        let Self { along, length, stiffness, tension } = self;
+        let [u, v] = along.map(|axes| Vec3A::from_array(axes.map(|lanes| lanes[lane])));
+        let [[lu, lv], [ku, kv], [tu, tv]] = [length, stiffness, tension].map(|both| both.map(|lanes| lanes[lane]));
+        let (du, dv) = (way * by_u, way * by_v);
+        let (eu, ev) = (u.dot(du), v.dot(dv));
+        let shear = (u.dot(dv) * lu + v.dot(du) * lv) * g;
+        let on_u = u * (eu * ku + ev * g) + v * (shear * lv) + du * tu;
+        let on_v = v * (ev * kv + eu * g) + u * (shear * lu) + dv * tv;
+        on_u * by_u + on_v * by_v
+    }
 }
 
 /// Where the particles are, m: now, before the substep, and the way of those that are free.
@@ -217,7 +235,6 @@ impl<S: Simd> WideTangent<S> {
 
 #[cfg(test)]
 mod tests {
-    use bevy_math::Vec3A;
     use fearless_simd::dispatch;
     use proptest::{collection, prop_assert, prop_assert_eq, proptest, test_runner::Config};
 

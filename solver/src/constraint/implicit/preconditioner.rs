@@ -35,7 +35,7 @@ impl Preconditioner {
         self.per_density = density.recip();
         self.inverse_diagonal.clear();
         self.inverse_diagonal.extend(masses.mass.iter().enumerate().map(|(i, [mass, ..])| {
-            let diagonal = || two_grid.fine.get(i, i).map_or(0.0, |stiffness| rate.of(stiffness) * density);
+            let diagonal = || two_grid.diagonal.get(i).map_or(0.0, |&stiffness| rate.of(stiffness) * density);
             if *mass > 0.0 { (mass + diagonal()).recip() } else { 0.0 }
         }));
         self.is_moved.clear();

@@ -117,18 +117,8 @@ impl RigidMotions {
                 let by_v = slope(pack.weft.map(|lanes| lanes[lane]));
                 let component = &mut components[two_grid.component[corners[0]] as usize];
                 let middle = corners.iter().map(|&i| point(&now[i])).sum::<Vec3A>() / 3.0;
-                let [u, v] = tangent.along.map(|axes| Vec3A::from_array(axes.map(|lanes| lanes[lane])));
-                let [[lu, lv], [ku, kv], [tu, tv]] =
-                    [tangent.length, tangent.stiffness, tangent.tension].map(|both| both.map(|lanes| lanes[lane]));
                 let g = pack.area[lane] * coupling;
-                let stress = |way: Vec3A| {
-                    let (du, dv) = (way * by_u, way * by_v);
-                    let (eu, ev) = (u.dot(du), v.dot(dv));
-                    let shear = (u.dot(dv) * lu + v.dot(du) * lv) * g;
-                    let on_u = u * (eu * ku + ev * g) + v * (shear * lv) + du * tu;
-                    let on_v = v * (ev * kv + eu * g) + u * (shear * lu) + dv * tv;
-                    on_u * by_u + on_v * by_v
-                };
+                let stress = |way: Vec3A| tangent.resist(lane, way, [by_u, by_v], g);
                 add_stiffness(&mut component.matrix, middle - component.middle, stress);
             }
         }
