@@ -7,7 +7,7 @@ use crate::{
     fabric::Fabric,
     parameter::{Parameter, check_parameters},
     pins::Pins,
-    solver::{LevelPass, Method, SelfCollision, SubstepPolicy, Topology},
+    solver::{LevelPass, Method, Moduli, SelfCollision, SubstepPolicy, Topology},
     state::{
         ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, StepInput, Warned,
     },
@@ -169,14 +169,14 @@ const MOST_ITERATIONS: u32 = 1000;
 const XPBD_SUBSTEPS: u32 = 8;
 
 impl Cloth {
-    /// Substeps and levels for a mesh.
-    pub(crate) fn substep_policy(&self, topology: &Topology) -> SubstepPolicy {
+    /// Substeps and levels for a mesh, of a sheet with `moduli` or of plain springs.
+    pub(crate) fn substep_policy(&self, topology: &Topology, moduli: Option<&Moduli>) -> SubstepPolicy {
         let has_strands = self.solver == ClothSolver::Strands;
         let mut policy = match self.substeps {
             Some(substeps) if has_strands => {
                 SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, topology))
             }
-            None if has_strands => SubstepPolicy::to_hold(self.max_strain, topology),
+            None if has_strands => SubstepPolicy::to_hold(self.max_strain, topology, moduli),
             substeps => SubstepPolicy::fixed(substeps.unwrap_or(XPBD_SUBSTEPS), Vec::new()),
         };
         if let Some(levels) = &self.levels {

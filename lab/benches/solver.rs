@@ -46,7 +46,7 @@ fn hang(criterion: &mut Criterion) {
         particles.set_masses(&topology, &material, |i| pins.contains(&(i as u32)));
         let tethers = build::tethers(&topology, &pins);
         let substep_policy = match method {
-            Method::Strands => SubstepPolicy::to_hold(0.005, &topology),
+            Method::Strands => SubstepPolicy::to_hold(0.005, &topology, material.moduli()),
             Method::Xpbd | Method::Explicit => SubstepPolicy::fixed(8, Vec::new()),
         };
         let settings = StepSettings { method, substep_policy, tether_slack: 0.002, ..StepSettings::default() };

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 
 use super::Cloth;
 use crate::{
-    solver::{CollisionFilter, StepSettings},
+    solver::{CollisionFilter, Material, StepSettings},
     state::ClothState,
 };
 
@@ -18,11 +18,12 @@ pub(crate) struct InForce {
 }
 
 impl InForce {
-    /// Those of a cloth whose settings are valid.
+    /// Those of a cloth whose settings are valid, and whose `state` has its material.
     pub fn new(settings: &Cloth, state: &ClothState) -> Self {
+        let moduli = state.material.as_ref().and_then(Material::moduli);
         let solver = StepSettings {
             method: settings.solver.into(),
-            substep_policy: settings.substep_policy(&state.topology),
+            substep_policy: settings.substep_policy(&state.topology, moduli),
             max_substeps: settings.max_substeps,
             max_velocity: settings.max_velocity,
             tether_slack: settings.tether_slack.unwrap_or_default(),

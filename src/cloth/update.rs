@@ -26,14 +26,14 @@ pub(crate) fn update_settings(
         if *status != ClothStatus::Ready {
             continue;
         }
-        let settings = cloth.validate().map(|()| {
-            *in_force = InForce::new(cloth, &state);
-            margin::warn_if_too_large(entity, &state, &in_force, &mut warned);
-        });
         let material = fabric.material_with(springs).map(|material| {
             state.material = Some(material);
             state.set_masses(&attachments.pins);
             resolution::warn_if_coarse(entity, fabric, springs, &state, &mut warned);
+        });
+        let settings = cloth.validate().map(|()| {
+            *in_force = InForce::new(cloth, &state);
+            margin::warn_if_too_large(entity, &state, &in_force, &mut warned);
         });
         let refusals: Vec<_> = settings.err().into_iter().chain(material.err()).collect();
         if !warned.refused {

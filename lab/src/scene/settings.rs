@@ -83,7 +83,7 @@ impl Settings {
     /// Substeps and levels for a mesh.
     fn substep_policy(&self, topology: &Topology) -> SubstepPolicy {
         let mut policy = match (self.method, self.substeps) {
-            (Method::Strands, None) => SubstepPolicy::to_hold(self.max_strain, topology),
+            (Method::Strands, None) => SubstepPolicy::to_hold(self.max_strain, topology, self.material.moduli()),
             (Method::Strands, Some(substeps)) => {
                 SubstepPolicy::fixed(substeps, SubstepPolicy::levels_for(substeps, topology))
             }

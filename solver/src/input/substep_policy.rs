@@ -1,6 +1,9 @@
 //! Chooses substeps and levels, so that a cloth is stretched no more than is wanted.
 
-use crate::topology::{Topology, level::LevelPass, structure::MeshStructure};
+use crate::{
+    material::Moduli,
+    topology::{Topology, level::LevelPass, structure::MeshStructure},
+};
 
 /// How many substeps a step takes, and how many iterations of the coarse levels.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,9 +19,6 @@ pub struct SubstepPolicy {
     pub contact_substeps: u32,
     /// Levels of those.
     pub contact_levels: Vec<LevelPass>,
-    /// Substeps in place of [`substeps`](Self::substeps) and [`contact_substeps`](Self::contact_substeps) for sheets that implicit
-    /// steps solve: those with moduli on meshes without rows and columns.
-    pub implicit_substeps: [u32; 2],
     /// Whether the substeps are those of a step of 1/60 s, and a longer one has more of them.
     pub follows_time_step: bool,
 }
@@ -55,8 +55,9 @@ impl SubstepPolicy {
     const MORE_WITH_SHARP: f32 = 3.0;
 
     /// What a cloth of 64 x 64 particles, 1 m wide and hung by two corners, is stretched while it swings in one substep
-    /// of 1/60 s, no unit. It grows with this power of the particles along a side; without rows and columns, on strands
-    /// only, with the one below.
+    /// of 1/60 s, no unit, as woven cotton and silk; plain springs of 5000 N/m half of that, but with fewer substeps a jerk can leave
+    /// cells of theirs turned inside out. It grows with this power of the particles along a side; without rows and columns, on
+    /// strands only, with the one below.
     const STRAIN_OF_ONE: f32 = 0.1;
     const GROWTH: f32 = 1.2;
     const GROWTH_ON_STRANDS: f32 = 0.8;
@@ -85,14 +86,17 @@ impl SubstepPolicy {
     const MOST_WITHOUT_LEVELS: f32 = 16.0;
 
     /// Substeps that hold the largest strain of [`Method::Strands`](crate::input::Method::Strands) at about `max_strain` (no
-    /// unit) at 60 steps a second, with levels where it takes them.
+    /// unit) at 60 steps a second, with levels where it takes them: of a sheet with `moduli`, or of plain springs.
     ///
     /// Measured with `lab hang` over grids of 16 to 256 particles a side: strain falls with the number of substeps, and
-    /// grows with the power 1.2 of the particles along a side, with levels 0.9. Levels never let a hung cloth come quite
-    /// to rest, so they are used where substeps alone would be too many, and on meshes without strands. A cloth that is
+    /// grows with the power 1.2 of the particles along a side, with levels 0.9. Levels keep a hung cloth moving, by some
+    /// millimetres a second, so they are used where substeps alone would be too many, and on meshes without strands. A cloth that is
     /// stretched more by its own weight stays so. On triangles a few springs are stretched several times as much: those
     /// next to a pin carry its whole load.
-    pub fn to_hold(max_strain: f32, topology: &Topology) -> Self {
+    pub fn to_hold(max_strain: f32, topology: &Topology, moduli: Option<&Moduli>) -> Self {
+        if moduli.is_some() && topology.two_grid.is_some() {
+            return Self::of_implicit_steps(max_strain);
+        }
         let grown = |of_64: f32, power: f32| of_64 * bevy_math::ops::powf(side(topology) / 64.0, power) / max_strain;
         let without = match topology.structure() {
             MeshStructure::Grid { .. } => grown(Self::STRAIN_OF_ONE, Self::GROWTH),
@@ -105,9 +109,7 @@ impl SubstepPolicy {
         let in_range = |substeps: f32| substeps.ceil().clamp(2.0, 64.0) as u32;
         let (substeps, needed) = (in_range(needed.max(least_on_triangles(topology))), in_range(needed));
         let least = Self::LEAST_AT_CONTACT.max(Self::LEAST_OF_SIDE * side(topology)).ceil() as u32;
-        let implicit = (Self::OF_IMPLICIT * (0.01 / max_strain).sqrt()).ceil().clamp(2.0, 16.0) as u32;
         Self {
-            implicit_substeps: [implicit, implicit.max(Self::LEAST_AT_CONTACT as u32)],
             substeps,
             levels: if with_levels { Self::levels_down_to(substeps, 1, topology) } else { Vec::new() },
             // Without the floor: near what is sharp, a multiple of these is enough.
@@ -117,32 +119,27 @@ impl SubstepPolicy {
         }
     }
 
+    fn of_implicit_steps(max_strain: f32) -> Self {
+        let substeps = (Self::OF_IMPLICIT * (0.01 / max_strain).sqrt()).ceil().clamp(2.0, 16.0) as u32;
+        let contact_substeps = substeps.max(Self::LEAST_AT_CONTACT as u32);
+        Self { substeps, contact_substeps, follows_time_step: true, ..Self::default() }
+    }
+
     /// So many substeps in every step.
     pub fn fixed(substeps: u32, levels: Vec<LevelPass>) -> Self {
         let contact_levels = levels.clone();
-        let implicit_substeps = [substeps; 2];
-        Self {
-            substeps,
-            levels,
-            contact_substeps: substeps,
-            contact_levels,
-            implicit_substeps,
-            follows_time_step: false,
-        }
+        Self { substeps, levels, contact_substeps: substeps, contact_levels, follows_time_step: false }
     }
 
-    /// Substeps and levels of a step of `dt` seconds, whether or not implicit steps solve it.
-    pub(crate) fn of_step(&self, risk: ContactRisk, dt: f32, is_implicit: bool) -> (u32, &[LevelPass]) {
+    /// Substeps and levels of a step of `dt` seconds.
+    pub(crate) fn of_step(&self, risk: ContactRisk, dt: f32) -> (u32, &[LevelPass]) {
         let factor = if self.follows_time_step { dt * 60.0 } else { 1.0 };
-        let [least, at_contact] =
-            if is_implicit { self.implicit_substeps } else { [self.substeps, self.contact_substeps] };
         let (substeps, levels) = match risk {
-            ContactRisk::None => (least, &self.levels[..]),
+            ContactRisk::None => (self.substeps, &self.levels[..]),
             ContactRisk::Some | ContactRisk::Robust | ContactRisk::Edge(_) | ContactRisk::Tip(_) => {
-                (at_contact, &self.contact_levels[..])
+                (self.contact_substeps, &self.contact_levels[..])
             }
         };
-        let levels = if is_implicit { &[] } else { levels };
         let for_edges = (Self::MORE_WITH_SHARP * substeps as f32).max(Self::LEAST_WITH_SHARP);
         let substeps = match risk {
             _ if !self.follows_time_step => substeps as f32,
@@ -151,7 +148,7 @@ impl SubstepPolicy {
             ContactRisk::Edge(wanted) => (wanted / factor).clamp(for_edges, 2.0 * for_edges),
             ContactRisk::Tip(wanted) => 2.0 * (wanted / factor).clamp(for_edges, 2.0 * for_edges),
         };
-        let substeps = substeps.max(least as f32);
+        let substeps = substeps.max(self.substeps as f32);
         // A step of 1/60 s isn't longer than that by a rounding.
         ((substeps * factor - 0.01).ceil().max(1.0) as u32, levels)
     }
@@ -165,7 +162,7 @@ impl SubstepPolicy {
     /// Levels that go with so many substeps, the finest `least` of them in any case.
     fn levels_down_to(substeps: u32, least: usize, topology: &Topology) -> Vec<LevelPass> {
         let widest = side(topology) / (2.5 * substeps as f32);
-        let iterations = if substeps < 4 { 8 } else { 4 };
+        let iterations = if substeps <= 4 { 8 } else { 4 };
         let count = topology.levels.len();
         let levels = topology.levels.iter().enumerate();
         let used = levels.filter(|&(i, level)| level.stride as f32 <= widest || i + least >= count);

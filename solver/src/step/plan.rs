@@ -62,8 +62,8 @@ impl<'a> Plan<'a> {
                 (None, _) => ContactRisk::None,
             };
         let policy = &ctx.settings.substep_policy;
-        let (wanted, levels) = policy.of_step(risk, dt, is_implicit);
-        let (without_risk, _) = policy.of_step(ContactRisk::None, dt, is_implicit);
+        let (wanted, levels) = policy.of_step(risk, dt);
+        let (without_risk, _) = policy.of_step(ContactRisk::None, dt);
         let reason = match ctx.settings.method {
             Method::Explicit => SubstepReason::Stability,
             Method::Strands | Method::Xpbd if !policy.follows_time_step => SubstepReason::Fixed,
@@ -71,7 +71,7 @@ impl<'a> Plan<'a> {
             Method::Strands | Method::Xpbd => SubstepReason::of_risk(risk, some.unwrap_or_default()),
         };
         // Levels move what hangs on a body without its weight on the body.
-        let levels = if is_on_body { &[] } else { levels };
+        let levels = if is_on_body || is_implicit { &[] } else { levels };
         let (most, stability, levels) = match ctx.settings.method {
             Method::Strands => (u32::MAX, Stability::unconditional(wanted), levels),
             Method::Xpbd => (u32::MAX, Stability::unconditional(wanted), &[][..]),

@@ -109,7 +109,7 @@ impl Bed {
         // Strands come after the tethers, and fight those that give nothing; the others keep what they were tested with.
         self.tether_slack = if method == Method::Strands { 0.005 } else { 0.0 };
         self.substep_policy = match method {
-            Method::Strands => SubstepPolicy::to_hold(0.01, &self.topology),
+            Method::Strands => SubstepPolicy::to_hold(0.01, &self.topology, self.material.moduli()),
             Method::Xpbd | Method::Explicit => SubstepPolicy::fixed(8, Vec::new()),
         };
         self

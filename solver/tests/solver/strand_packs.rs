@@ -291,7 +291,7 @@ fn the_substeps_to_hold_a_strain_hold_it_on_strands() {
         let mut bed = hung(ell(side));
         bed.material = springs_in_air(Springs::default());
         bed.tether_slack = 0.002;
-        bed.substep_policy = SubstepPolicy::to_hold(max_strain, &bed.topology);
+        bed.substep_policy = SubstepPolicy::to_hold(max_strain, &bed.topology, bed.material.moduli());
         assert!(bed.substep_policy.levels.is_empty());
         bed.run(3.0);
         let strains = (0..60).map(|_| {

@@ -130,7 +130,7 @@ fn the_substeps_to_hold_a_strain_hold_it() {
     let mut failures = Vec::new();
     for (n, max_strain) in [(32, 0.01), (64, 0.01), (32, 0.005)] {
         let mut bed = hung(n);
-        bed.substep_policy = SubstepPolicy::to_hold(max_strain, &bed.topology);
+        bed.substep_policy = SubstepPolicy::to_hold(max_strain, &bed.topology, bed.material.moduli());
         bed.run(4.0);
         // The mean over a second, as the lab measures it.
         let strains = (0..60).map(|_| {
@@ -171,7 +171,10 @@ fn a_hung_cloth_comes_to_rest() {
 
 #[test]
 fn less_strain_takes_no_fewer_substeps_and_a_finer_mesh_neither() {
-    let substeps = |n, max_strain| SubstepPolicy::to_hold(max_strain, &hung(n).topology).substeps;
+    let substeps = |n, max_strain| {
+        let bed = hung(n);
+        SubstepPolicy::to_hold(max_strain, &bed.topology, bed.material.moduli()).substeps
+    };
     let by_strain = [0.1, 0.02, 0.01, 0.005, 0.001, 1e-6].map(|max_strain| substeps(32, max_strain));
     assert!(by_strain.is_sorted() && by_strain[0] == 2 && by_strain[4] > 2 * by_strain[2], "{by_strain:?}");
     let by_size = [2, 16, 64, 128].map(|n| substeps(n, 0.005));
@@ -186,7 +189,7 @@ fn more_substeps_are_taken_near_an_obstacle_and_without_tethers() {
         vec![Obstacle::still(shape, pose)]
     };
     let mut bed = hung(16);
-    bed.substep_policy = SubstepPolicy::to_hold(0.1, &bed.topology);
+    bed.substep_policy = SubstepPolicy::to_hold(0.1, &bed.topology, bed.material.moduli());
     bed.obstacles = ground(-3.0);
     assert_eq!(bed.step(FRAME).substeps, 2);
     let tethers = bed.tethers.take();
