@@ -1,0 +1,142 @@
+//! Garments of irregular triangles, cut and sewn in code: they hang, or fall on balls.
+//!
+//! ```text
+//! cargo run --all-features --example garments
+//! cargo run --all-features --example garments -- dropped --capture captures --frames 300 --every 300 --size 1600x700
+//! ```
+
+#[path = "../common/mod.rs"]
+mod common;
+mod curve;
+mod flat;
+mod garment;
+mod props;
+mod shirt;
+mod trousers;
+mod wardrobe;
+
+use bevy::{math::primitives::InfinitePlane3d, prelude::*};
+use bevy_drape::prelude::*;
+use clap::{Parser, ValueEnum};
+
+use wardrobe::{Hook, Item};
+
+#[derive(Parser)]
+struct Command {
+    /// What is shown
+    #[arg(value_enum, default_value = "hung")]
+    show: Show,
+    #[command(flatten)]
+    shared: common::Arguments,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Show {
+    /// On a rod, by what each hangs by
+    Hung,
+    /// Each on a ball
+    Dropped,
+}
+
+/// Height of the rod, m.
+const ROD: f32 = 1.75;
+
+/// Radius of the balls, and from one to the next, m.
+const BALL: f32 = 0.34;
+const SPACING: f32 = 1.06;
+
+fn main() -> AppExit {
+    let Command { show, shared } = Command::parse();
+    common::app_with(shared, "Garments", "Garments of irregular triangles, cut and sewn in code")
+        .add_plugins(ClothPlugin::default())
+        .add_systems(Startup, (common::spawn_scenery, spawn_display))
+        .add_systems(
+            Startup,
+            match show {
+                Show::Hung => hang.into_configs(),
+                Show::Dropped => drop.into_configs(),
+            },
+        )
+        .add_systems(Update, display)
+        .run()
+}
+
+fn hang(mut commands: Commands, mut studio: common::Studio) {
+    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.35, 4.0), Vec3::new(0.0, 1.2, 0.0));
+    let end = Vec3::new(1.95, ROD, 0.0);
+    studio.spawn_rod(&mut commands, end * Vec3::new(-1.0, 1.0, 1.0), end, 0.012);
+    for item in wardrobe::items() {
+        let place = Transform { translation: item.hung.translation + Vec3::Y * ROD, ..item.hung };
+        match item.hook {
+            Hook::Hanger => props::spawn_hanger(&mut commands, &mut studio, place, ROD),
+            Hook::Hoop => props::spawn_hoop(&mut commands, &mut studio, place, ROD),
+            Hook::Pegs(ref pegs) => {
+                for &peg in pegs {
+                    let at_rod = place.transform_point(peg).with_y(ROD);
+                    props::spawn_peg(&mut commands, &mut studio, place.with_translation(at_rod));
+                }
+            }
+        }
+        spawn(&mut commands, &mut studio, item, place, true);
+    }
+}
+
+fn drop(mut commands: Commands, mut studio: common::Studio) {
+    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.9, 3.9), Vec3::new(0.0, 0.35, 0.0));
+    commands.spawn(ClothCollider::from(InfinitePlane3d::default()));
+    let ball = Sphere::new(BALL);
+    for (i, item) in wardrobe::items().into_iter().enumerate() {
+        let below = Vec3::new(SPACING * (i as f32 - 2.0), BALL, 0.0);
+        let stone = studio.solid(ball.mesh().uv(64, 32), Color::srgb(0.55, 0.53, 0.50));
+        commands.spawn((stone, ClothCollider::from(ball), Transform::from_translation(below)));
+        let top = below + Vec3::Y * BALL;
+        let place = Transform { translation: item.dropped.translation + top, ..item.dropped };
+        spawn(&mut commands, &mut studio, item, place, false);
+    }
+}
+
+/// What the display calls it.
+#[derive(Component)]
+struct Label(String);
+
+fn spawn(commands: &mut Commands, studio: &mut common::Studio, item: Item, place: Transform, is_hung: bool) {
+    let fabric = Fabric::PRESETS.into_iter().find(|preset| preset.fabric == item.fabric);
+    let fabric = fabric.map_or_else(String::new, |preset| preset.name.replace('_', " "));
+    commands.spawn((
+        studio.cloth(item.mesh, item.color),
+        Cloth {
+            self_collision: SelfCollision::Robust,
+            // They meet themselves and what they fall on, and not each other.
+            collision_layers: 2,
+            collision_mask: 1,
+            ..default()
+        },
+        item.fabric,
+        if is_hung { item.hook.pins() } else { Pins::none() },
+        place,
+        Label(format!("{}, {fabric}", item.name)),
+    ));
+}
+
+/// Where the numbers are shown.
+#[derive(Component)]
+struct Display;
+
+fn spawn_display(mut commands: Commands) {
+    commands.spawn((
+        Text::default(),
+        TextFont::from_font_size(13.0),
+        TextColor(Color::srgb(0.97, 0.96, 0.94)),
+        Node { position_type: PositionType::Absolute, left: px(24), top: px(20), ..default() },
+        Display,
+    ));
+}
+
+fn display(cloths: Query<(&Label, &ClothState, &ClothReport)>, mut display: Single<&mut Text, With<Display>>) {
+    let lines = cloths.iter().filter_map(|(label, state, report)| {
+        let (strain, substeps) = (100.0 * state.strain().largest, report.latest()?.substeps);
+        let particles = state.particle_count();
+        Some(format!("{}: {particles} particles, {substeps} substeps, stretched by {strain:.1} % at most\n", label.0))
+    });
+    display.0 = lines.collect();
+}
