@@ -9,7 +9,7 @@ use bevy::{
 
 use super::{
     curve::{Curve, outline},
-    garment::{Garment, symmetric},
+    garment::{Garment, turned_around},
 };
 
 /// Radius of the skirt's waist, m.
@@ -37,18 +37,9 @@ pub fn poncho(edge: f64) -> Mesh {
     const HALF: f64 = 0.62;
     const ROUND: f64 = 0.12;
     let garment = Garment::new(edge);
-    let middle = HALF - ROUND;
-    // Corner after corner, each with the side that comes before it.
-    let square = (0..4).flat_map(|corner| {
-        let turn = DVec2::from_angle(f64::from(corner) * FRAC_PI_2);
-        let side = Curve::new(|share| turn.rotate(DVec2::new(HALF, -middle + share * 2.0 * middle)));
-        let round =
-            Curve::new(|share| turn.rotate(DVec2::splat(middle) + ROUND * DVec2::from_angle(share * FRAC_PI_2)));
-        [side, round]
-    });
-    let cut = |curve: Vec<Curve>| outline(&curve, garment.step());
-    let diamond = cut(square.collect()).into_iter().map(|p| DVec2::from_angle(0.5 * FRAC_PI_2).rotate(p)).collect();
-    let outlines = [diamond, cut(vec![Curve::ellipse(NECK, 0.0, TAU)])];
+    let square = outline(&rounded_square(HALF, ROUND), garment.step());
+    let diamond = square.into_iter().map(|p| DVec2::from_angle(0.5 * FRAC_PI_2).rotate(p)).collect();
+    let outlines = [diamond, outline(&[Curve::ellipse(NECK, 0.0, TAU)], garment.step())];
     garment.sew(&outlines, lying).mesh()
 }
 
@@ -57,25 +48,34 @@ pub fn cushion(edge: f64) -> Mesh {
     const HALF: f64 = CUSHION;
     /// Half the thickness, m.
     const BULGE: f64 = 0.085;
+    /// Radius of the corners, m: a triangle with all of its own in the seam would be there twice.
+    const ROUND: f64 = 0.03;
+    /// What the product of both cosines is at the rounded corners, or a bit more: there the seam closes.
+    const CORNER: f64 = 0.005;
     /// How far the sides are drawn in at their middle, as a share.
     const DRAWN_IN: f64 = 0.1;
     let place = |p: DVec2| {
         let full = (FRAC_PI_2 * p / HALF).map(f64::cos);
         let out = p * (1.0 - DRAWN_IN * DVec2::new(full.y, full.x));
-        DVec3::new(out.x, -out.y, BULGE * (full.x * full.y).max(0.0))
+        DVec3::new(out.x, -out.y, BULGE * (full.x * full.y - CORNER).max(0.0))
     };
     let garment = Garment::new(edge);
-    let right = outline(
-        &[
-            Curve::line((0.0, -HALF), (HALF, -HALF)),
-            Curve::line((HALF, -HALF), (HALF, HALF)),
-            Curve::line((HALF, HALF), (0.0, HALF)),
-        ],
-        garment.step(),
-    );
-    let square = symmetric([right, vec![DVec2::new(0.0, HALF)]].concat());
-    let back = |p: DVec2| super::garment::turned_around(place(p));
-    garment.sew(&[square.clone()], place).sew(&[square], back).mesh()
+    let square = [outline(&rounded_square(HALF, ROUND), garment.step())];
+    let back = |p: DVec2| turned_around(place(p));
+    garment.sew(&square, place).sew(&square, back).mesh()
+}
+
+/// The outline of a square of which `half` is half the side, and `round` the radius of its corners, m.
+fn rounded_square(half: f64, round: f64) -> Vec<Curve> {
+    let middle = half - round;
+    // Corner after corner, each with the side that comes before it.
+    let corner = |corner: u32| {
+        let turn = DVec2::from_angle(f64::from(corner) * FRAC_PI_2);
+        let side = Curve::new(|share| turn.rotate(DVec2::new(half, -middle + share * 2.0 * middle)));
+        let arc = Curve::new(|share| turn.rotate(middle + round * DVec2::from_angle(share * FRAC_PI_2)));
+        [side, arc]
+    };
+    (0..4).flat_map(corner).collect()
 }
 
 fn lying(p: DVec2) -> DVec3 {

@@ -30,7 +30,7 @@ struct Command {
     shared: common::Arguments,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Show {
     /// On a rod, by what each hangs by
     Hung,
@@ -41,29 +41,25 @@ enum Show {
 /// Height of the rod, m.
 const ROD: f32 = 1.75;
 
-/// Radius of the balls, and from one to the next, m.
+/// Radius of the balls, m.
 const BALL: f32 = 0.34;
-const SPACING: f32 = 1.06;
+
+/// From one ball to the next to the right, and by how much every other one is farther back, m.
+const SPACING: Vec2 = Vec2::new(0.80, 0.75);
 
 fn main() -> AppExit {
     let Command { show, shared } = Command::parse();
     common::app_with(shared, "Garments", "Garments of irregular triangles, cut and sewn in code")
         .add_plugins(ClothPlugin::default())
         .add_systems(Startup, (common::spawn_scenery, spawn_display))
-        .add_systems(
-            Startup,
-            match show {
-                Show::Hung => hang.into_configs(),
-                Show::Dropped => drop.into_configs(),
-            },
-        )
+        .add_systems(Startup, (hang.run_if(move || show == Show::Hung), drop.run_if(move || show == Show::Dropped)))
         .add_systems(Update, display)
         .run()
 }
 
 fn hang(mut commands: Commands, mut studio: common::Studio) {
-    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.35, 4.0), Vec3::new(0.0, 1.2, 0.0));
-    let end = Vec3::new(1.95, ROD, 0.0);
+    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.2, 2.85), Vec3::new(0.0, 1.2, 0.0));
+    let end = Vec3::new(2.6, ROD, 0.0);
     studio.spawn_rod(&mut commands, end * Vec3::new(-1.0, 1.0, 1.0), end, 0.012);
     for item in wardrobe::items() {
         let place = Transform { translation: item.hung.translation + Vec3::Y * ROD, ..item.hung };
@@ -82,11 +78,11 @@ fn hang(mut commands: Commands, mut studio: common::Studio) {
 }
 
 fn drop(mut commands: Commands, mut studio: common::Studio) {
-    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.9, 3.9), Vec3::new(0.0, 0.35, 0.0));
+    common::spawn_camera(&mut commands, Vec3::new(0.0, 1.5, 2.75), Vec3::new(0.0, 0.34, -0.2));
     commands.spawn(ClothCollider::from(InfinitePlane3d::default()));
     let ball = Sphere::new(BALL);
     for (i, item) in wardrobe::items().into_iter().enumerate() {
-        let below = Vec3::new(SPACING * (i as f32 - 2.0), BALL, 0.0);
+        let below = Vec3::new(SPACING.x * (i as f32 - 2.0), BALL, -SPACING.y * (i % 2) as f32);
         let stone = studio.solid(ball.mesh().uv(64, 32), Color::srgb(0.55, 0.53, 0.50));
         commands.spawn((stone, ClothCollider::from(ball), Transform::from_translation(below)));
         let top = below + Vec3::Y * BALL;
@@ -127,7 +123,15 @@ fn spawn_display(mut commands: Commands) {
         Text::default(),
         TextFont::from_font_size(13.0),
         TextColor(Color::srgb(0.97, 0.96, 0.94)),
-        Node { position_type: PositionType::Absolute, left: px(24), top: px(20), ..default() },
+        Node {
+            position_type: PositionType::Absolute,
+            left: px(14),
+            top: px(14),
+            padding: UiRect::axes(px(10), px(5)),
+            border_radius: BorderRadius::all(px(6)),
+            ..default()
+        },
+        BackgroundColor(Color::srgba(0.10, 0.11, 0.13, 0.55)),
         Display,
     ));
 }
@@ -136,7 +140,7 @@ fn display(cloths: Query<(&Label, &ClothState, &ClothReport)>, mut display: Sing
     let lines = cloths.iter().filter_map(|(label, state, report)| {
         let (strain, substeps) = (100.0 * state.strain().largest, report.latest()?.substeps);
         let particles = state.particle_count();
-        Some(format!("{}: {particles} particles, {substeps} substeps, stretched by {strain:.1} % at most\n", label.0))
+        Some(format!("{}: {particles} particles, {substeps} substeps, stretched by {strain:.1} % at most", label.0))
     });
-    display.0 = lines.collect();
+    display.0 = lines.collect::<Vec<_>>().join("\n");
 }

@@ -56,19 +56,14 @@ fn mirrored(p: DVec2) -> DVec2 {
 /// The outline of the right front, whose outer seam is at X = 0.
 fn panel(step: f64) -> Vec<DVec2> {
     let inner = |depth: f64| DVec2::new(-section(depth).1.length(), depth);
-    let from_to = |from: f64, to: f64| Curve::new(move |share| inner(from + share * (to - from)));
-    // Points are dense where the seam turns below the crotch.
-    let rise = Curve::new(|share| inner(CROTCH * (1.0 - (1.0 - share) * (1.0 - share))));
-    outline(
-        &[
-            Curve::line((0.0, LENGTH), (0.0, 0.0)),
-            Curve::line((0.0, 0.0), inner(0.0)),
-            rise,
-            from_to(CROTCH, LENGTH),
-            Curve::line(inner(LENGTH), (0.0, LENGTH)),
-        ],
-        step,
-    )
+    // Dense below the turn, where the seam runs backwards more than down.
+    let rise = Curve::new(|share| inner(CROTCH * share * (2.0 - share)));
+    let leg = Curve::new(|share| inner(CROTCH + share * (LENGTH - CROTCH)));
+    // Points of a curve are on its chords. On the seam itself, those of both sides meet.
+    let inside = rise.steps(step).chain(leg.steps(step)).map(|p| inner(p.y));
+    let waist = outline(&[Curve::line((0.0, LENGTH), (0.0, 0.0)), Curve::line((0.0, 0.0), inner(0.0))], step);
+    let hem = Curve::line(inner(LENGTH), (0.0, LENGTH));
+    waist.into_iter().chain(inside).chain(hem.steps(step)).collect()
 }
 
 /// Where a point of the right front is.

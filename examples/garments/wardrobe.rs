@@ -62,7 +62,7 @@ pub fn items() -> [Item; 5] {
             mesh: shirt::shirt(EDGE),
             hook: Hook::Hanger,
             hung: hung(-1.5, -0.36, 0.25),
-            dropped: Transform::from_xyz(0.0, 0.14, 0.06).with_rotation(lying),
+            dropped: Transform::from_xyz(0.0, 0.14, -0.06).with_rotation(lying),
         },
         Item {
             name: "Circle skirt",
