@@ -17,7 +17,7 @@ use drape_lab::scene::{FRAME, Scene};
 use experiment::Experiment;
 
 #[derive(Parser)]
-struct Arguments {
+struct Command {
     /// What is shown
     #[arg(value_enum, default_value = "drape")]
     experiment: Experiment,
@@ -36,7 +36,7 @@ struct Arguments {
 struct Stage(Scene);
 
 fn main() -> std::io::Result<AppExit> {
-    let Arguments { experiment, n, substeps, shared } = Arguments::parse();
+    let Command { experiment, n, substeps, shared } = Command::parse();
     let (eye, look_at) = experiment.view();
     let scene = experiment.scene(n, substeps)?;
     let setup = move |mut commands: Commands| {
