@@ -46,11 +46,12 @@ pub fn shirt(edge: f64) -> Mesh {
     let tip = on_body(armhole().at(1.0));
     let hole: Vec<DVec3> = half.iter().copied().chain([tip]).chain(over).chain([half[0]]).collect();
     let (sleeve, place) = sleeve(&hole, step);
+    let sleeve = [sleeve];
     garment
         .sew(&[front], on_body)
         .sew(&[back], |p| turned_around(on_body(p)))
-        .sew(&[sleeve.clone()], &place)
-        .sew(&[sleeve], |p| turned_around(place(p)))
+        .sew(&sleeve, &place)
+        .sew(&sleeve, |p| turned_around(place(p)))
         .mesh()
 }
 
