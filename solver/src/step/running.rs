@@ -171,7 +171,10 @@ impl<'a> Running<'a> {
         let ctx = substep.ctx;
         if substep.is_near {
             self.contacts = {
-                let Scratch { lanes, broad_phase, faces, bodies, simd_level, .. } = &mut **scratch;
+                let Scratch { lanes, broad_phase, faces, bodies, implicit, simd_level, .. } = &mut **scratch;
+                if substep.implicit.is_some() {
+                    implicit.support.note(&lanes.position);
+                }
                 contact::project(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, *simd_level)
             };
         }
