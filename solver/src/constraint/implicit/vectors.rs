@@ -22,15 +22,9 @@ pub(super) struct Masses {
     pub mass: Vec<[f32; 4]>,
     /// The particles that are fixed or much heavier than their cloth, in order.
     pub held: Vec<u32>,
-    count: usize,
 }
 
 impl Masses {
-    /// Number of particles.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
     /// Takes over the masses of a cloth of a `density`, kg/m².
     pub fn read(&mut self, lanes: &Lanes, topology: &Topology, density: f32) {
         self.held.clear();
@@ -43,8 +37,8 @@ impl Masses {
                 self.held.push(particle);
             }
         }
-        self.count = self.mass.len();
-        self.mass.resize((self.count + 1).next_multiple_of(2), [0.0; 4]);
+        let count = (self.mass.len() + 1).next_multiple_of(2);
+        self.mass.resize(count, [0.0; 4]);
     }
 }
 
