@@ -55,6 +55,8 @@ pub(super) struct Running<'a> {
     contacts: u32,
     /// Pairs of features that touched in the latest substep.
     pub touched: u32,
+    /// Whether any did, of this cloth or of another that it is stepped with.
+    pub features_touch: bool,
 }
 
 impl<'a> Running<'a> {
@@ -116,6 +118,7 @@ impl<'a> Running<'a> {
             is_finished: false,
             contacts: 0,
             touched: 0,
+            features_touch: false,
         }
     }
 
@@ -173,7 +176,8 @@ impl<'a> Running<'a> {
         if substep.is_near {
             self.contacts = {
                 let Scratch { lanes, broad_phase, faces, bodies, implicit, simd_level, .. } = &mut **scratch;
-                if substep.implicit.is_some() {
+                // What triangles and edges are pushed by moves several particles: pressed in, they would be thrown off sideways.
+                if substep.implicit.is_some() && !self.features_touch {
                     implicit.support.note(&lanes.position);
                 }
                 contact::project(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, *simd_level)
