@@ -22,9 +22,6 @@ pub struct Particles {
     pub inverse_mass: Vec<f32>,
     /// External force, N, constant over a step. The step doesn't clear it.
     pub force: Vec<Vec3A>,
-    /// Particles that an obstacle supported at the end of the latest step, and unit vectors along which it pushed them. The next
-    /// step begins with these where implicit steps solve it; empty elsewhere, and where nothing is touched.
-    pub support: Vec<(u32, Vec3A)>,
 }
 
 impl Particles {
@@ -36,7 +33,6 @@ impl Particles {
             velocity: vec![Vec3A::ZERO; count],
             inverse_mass: vec![0.0; count],
             force: vec![Vec3A::ZERO; count],
-            support: Vec::new(),
         };
         particles.set_masses(topology, material, |_| false);
         particles

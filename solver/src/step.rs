@@ -100,7 +100,6 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut FeatureContacts) {
             let touched = touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
             // Whose they are isn't known: they count once.
             cloths[0].touched = touched;
-            cloths.iter_mut().for_each(|cloth| cloth.features_touch = touched > 0);
         }
         for cloth in &mut *cloths {
             cloth.finish(span.clone());

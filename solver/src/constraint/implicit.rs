@@ -34,8 +34,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use crate::{
     constraint::{
         implicit::{
-            direction::Direction, edge::EdgeTangent, face::FaceTangent, preconditioner::Preconditioner,
-            support::Support, vectors::Masses,
+            direction::Direction, edge::EdgeTangent, face::FaceTangent, preconditioner::Preconditioner, vectors::Masses,
         },
         strand::law::DirectionModuli,
         unstructured::bend::{
@@ -59,7 +58,6 @@ mod edge;
 mod face;
 mod preconditioner;
 mod rigid;
-mod support;
 mod vectors;
 
 /// Iterations of conjugate gradients in a substep.
@@ -83,8 +81,6 @@ pub(crate) struct ImplicitSheet<'a> {
     h: f32,
     /// Longest way that the cloth takes a particle in a substep, m: where numbers end, so does the cloth's motion.
     farthest: f32,
-    /// Longest push by contact that supports a particle, m.
-    pub longest_push: f32,
 }
 
 /// Working memory of the implicit solver.
@@ -94,10 +90,6 @@ pub(crate) struct ImplicitBuffers {
     preconditioner: Preconditioner,
     faces: Vec<FaceTangent>,
     edges: Vec<EdgeTangent>,
-    /// Particles that obstacles support.
-    pub support: Support,
-    /// Particles that are part of a body.
-    attached: Vec<u32>,
     /// Frames of packs of bends, where they need them.
     frames: Vec<BendFrames>,
     /// Packs of faces, and of bends, of which some corner doesn't fall with the cloth.
@@ -150,7 +142,6 @@ impl<'a> ImplicitSheet<'a> {
             bend: BendLaw::new(topology, &ctx.material, h),
             h,
             farthest: FARTHEST * ctx.settings.max_velocity * h,
-            longest_push: ctx.settings.max_depenetration_velocity * h,
         })
     }
 
@@ -161,20 +152,11 @@ impl<'a> ImplicitSheet<'a> {
         buffers.masses.read(lanes, self.topology, ctx.material.density);
         let [stretch, bend] = stiffness(self.moduli, self.h);
         buffers.preconditioner.prepare(self.two_grid, &buffers.masses, ctx.material.density, stretch, bend);
+        let ImplicitBuffers { masses, preconditioner, held_faces, held_bends, fall, free_fall, .. } = &mut *buffers;
         let attached = |pin: &AttachedPin| ctx.pin_motions[pin.pin_motion as usize].particle;
-        buffers.attached.clear();
-        buffers.attached.extend(ctx.attached_pins.iter().map(attached));
-        buffers.free_fall = ctx.gravity * (self.h * self.h);
-        let ImplicitBuffers { masses, preconditioner, attached, .. } = &mut *buffers;
-        preconditioner.rigid.prepare(self.two_grid, masses.held.iter().chain(&*attached).copied());
-        self.let_fall(buffers);
-    }
-
-    /// Finds how components that something holds fall, and what doesn't fall along with them.
-    fn let_fall(&self, buffers: &mut ImplicitBuffers) {
-        let ImplicitBuffers {
-            masses, preconditioner, held_faces, held_bends, fall, free_fall, support, attached, ..
-        } = buffers;
+        let attached = || ctx.attached_pins.iter().map(attached);
+        preconditioner.rigid.prepare(self.two_grid, masses.held.iter().copied().chain(attached()));
+        *free_fall = ctx.gravity * (self.h * self.h);
         let [x, y, z] = free_fall.to_array();
         for (i, (way, mass)) in fall.way.iter_mut().zip(&masses.mass).enumerate() {
             *way = if mass[0] > 0.0 && !preconditioner.rigid.is_free(self.two_grid, i) {
@@ -184,15 +166,14 @@ impl<'a> ImplicitSheet<'a> {
             };
         }
         // What is part of a body falls with it.
-        attached.iter().for_each(|&particle| fall.way[particle as usize] = [0.0; 4]);
-        support.filter(&mut fall.way);
+        attached().for_each(|particle| fall.way[particle as usize] = [0.0; 4]);
         let nobody = self.topology.particle_count() as u32;
-        let falls = [x, y, z, 0.0];
+        let is_still = |particle: u32| fall.way[particle as usize] == [0.0; 4];
         let is_held = |particles: &[u32]| {
             let of_held = |&&particle: &&u32| {
                 particle < nobody && !preconditioner.rigid.is_free(self.two_grid, particle as usize)
             };
-            particles.iter().filter(of_held).any(|&particle| fall.way[particle as usize] != falls)
+            particles.iter().filter(of_held).any(|&particle| is_still(particle))
         };
         let Topology { face_packs, bend_packs, .. } = self.topology;
         held_faces.clear();
@@ -227,8 +208,7 @@ impl<'a> ImplicitSheet<'a> {
         buffers: &mut ImplicitBuffers,
     ) {
         let GatheredParticles { now, before } = gathered;
-        self.find_support(before, buffers);
-        let ImplicitBuffers { masses, preconditioner, free_fall, fall, inertia, support, .. } = &mut *buffers;
+        let ImplicitBuffers { masses, preconditioner, free_fall, fall, inertia, .. } = &mut *buffers;
         let rigid = &mut preconditioner.rigid;
         // Who falls together isn't strained.
         if rigid.has(false) {
@@ -239,7 +219,6 @@ impl<'a> ImplicitSheet<'a> {
             }
         }
         dispatch!(level, simd => vectors::inertia(simd, now, before, &fall.way, masses, &mut inertia.way));
-        support.filter(&mut inertia.way);
         rigid.begin(self.two_grid, now, masses);
         rigid.remove_free(self.two_grid, masses, &mut inertia.way);
         self.linearise(level, now, before, buffers);
@@ -267,34 +246,16 @@ impl<'a> ImplicitSheet<'a> {
         inertia.go(level, [correction, residual]);
         buffers.latest.clear();
         for _ in 0..ITERATIONS {
-            let ImplicitBuffers { masses, preconditioner, inertia, latest, residual, preconditioned, support, .. } =
+            let ImplicitBuffers { masses, preconditioner, inertia, latest, residual, preconditioned, .. } =
                 &mut *buffers;
-            support.take_loads(residual);
             dispatch!(level, simd => preconditioner.apply(simd, self.two_grid, masses, residual, preconditioned));
-            support.put_loads(residual);
-            support.filter(preconditioned);
             // In exact numbers, it is conjugate to all directions but these two.
             latest.turn_to(level, preconditioned, inertia);
             self.multiply(level, buffers);
             let ImplicitBuffers { latest, residual, correction, .. } = &mut *buffers;
             latest.go(level, [correction, residual]);
         }
-        let ImplicitBuffers { masses, correction, residual, support, free_fall, .. } = &*buffers;
-        vectors::go(correction, self.farthest, now);
-        support.press(residual, *free_fall, masses, self.longest_push, now);
-    }
-
-    /// Finds the particles that obstacles support: their components don't fall freely.
-    fn find_support(&self, before: &[[f32; 4]], buffers: &mut ImplicitBuffers) {
-        let ImplicitBuffers { masses, preconditioner, support, .. } = &mut *buffers;
-        let was_supported = !support.is_empty();
-        let place = |i: usize| Vec3A::from_slice(&before[i]);
-        let is_free = |i: u32| masses.mass[i as usize][0] > 0.0;
-        support.find(self.topology.particle_count(), place, is_free, self.longest_push);
-        preconditioner.rigid.hold_components(self.two_grid, support.particles());
-        if was_supported || !support.is_empty() {
-            self.let_fall(buffers);
-        }
+        vectors::go(&buffers.correction, self.farthest, now);
     }
 
     /// The gradient of the energy at x + h v, what its second derivatives are made of, and their products with the way y - x and

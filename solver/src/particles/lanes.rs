@@ -201,7 +201,6 @@ mod tests {
                 inverse_mass: vec![1.0; count],
                 force: points.clone(),
                 position: points,
-                support: Vec::new(),
             };
             let mut lanes = Lanes::default();
             lanes.load(&particles, order, SimdLevel::Best);

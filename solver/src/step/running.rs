@@ -55,8 +55,6 @@ pub(super) struct Running<'a> {
     contacts: u32,
     /// Pairs of features that touched in the latest substep.
     pub touched: u32,
-    /// Whether any did, of this cloth or of another that it is stepped with.
-    pub features_touch: bool,
 }
 
 impl<'a> Running<'a> {
@@ -99,7 +97,6 @@ impl<'a> Running<'a> {
             slack: ctx.slack(),
         };
         scratch.air.sample(particles, ctx);
-        scratch.implicit.support.begin(particles);
         substep.prepare(scratch);
         scratch.body_attachments.rest(&mut scratch.lanes);
         Self {
@@ -118,7 +115,6 @@ impl<'a> Running<'a> {
             is_finished: false,
             contacts: 0,
             touched: 0,
-            features_touch: false,
         }
     }
 
@@ -175,11 +171,7 @@ impl<'a> Running<'a> {
         let ctx = substep.ctx;
         if substep.is_near {
             self.contacts = {
-                let Scratch { lanes, broad_phase, faces, bodies, implicit, simd_level, .. } = &mut **scratch;
-                // What triangles and edges are pushed by moves several particles: pressed in, they would be thrown off sideways.
-                if substep.implicit.is_some() && !self.features_touch {
-                    implicit.support.note(&lanes.position);
-                }
+                let Scratch { lanes, broad_phase, faces, bodies, simd_level, .. } = &mut **scratch;
                 contact::project(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, *simd_level)
             };
         }
@@ -195,11 +187,7 @@ impl<'a> Running<'a> {
     pub fn end(self) -> StepReport {
         let Self { particles, scratch, substep, substeps, reason, contacts, touched, .. } = self;
         let contacts = contacts + touched;
-        let Scratch { lanes, steady_force, implicit, simd_level, .. } = scratch;
-        match substep.implicit {
-            Some(sheet) => implicit.support.end(lanes, sheet.longest_push, particles),
-            None => particles.support.clear(),
-        }
+        let Scratch { lanes, steady_force, simd_level, .. } = scratch;
         match substep.helpers {
             Some((pool, _)) => grid_substep::store(pool, lanes, particles, *simd_level),
             None => lanes.store(particles, *simd_level),

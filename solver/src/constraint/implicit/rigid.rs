@@ -50,12 +50,7 @@ impl RigidMotions {
     pub fn prepare(&mut self, two_grid: &TwoGrid, held: impl Iterator<Item = u32>) {
         self.components.clear();
         self.components.resize(two_grid.component_count, Component::default());
-        self.hold_components(two_grid, held);
-    }
-
-    /// Counts the components of some particles as held, for the rest of the step.
-    pub fn hold_components(&mut self, two_grid: &TwoGrid, particles: impl Iterator<Item = u32>) {
-        for particle in particles {
+        for particle in held {
             self.components[two_grid.component[particle as usize] as usize].is_held = true;
         }
     }

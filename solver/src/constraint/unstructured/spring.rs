@@ -211,7 +211,6 @@ mod tests {
             velocity: vec![Vec3A::ZERO; 2],
             inverse_mass: vec![0.0, 2.0],
             force: vec![Vec3A::ZERO; 2],
-            support: Vec::new(),
         };
         lanes.load(&particles, Order::plain(2), SimdLevel::Best);
         lanes.previous = lanes.position.clone();
