@@ -119,6 +119,7 @@ impl SubstepPolicy {
         }
     }
 
+    /// Those of sheets that implicit steps solve. They have no levels.
     fn of_implicit_steps(max_strain: f32) -> Self {
         let substeps = (Self::OF_IMPLICIT * (0.01 / max_strain).sqrt()).ceil().clamp(2.0, 16.0) as u32;
         let contact_substeps = substeps.max(Self::LEAST_AT_CONTACT as u32);
