@@ -22,6 +22,9 @@ pub struct Particles {
     pub inverse_mass: Vec<f32>,
     /// External force, N, constant over a step. The step doesn't clear it.
     pub force: Vec<Vec3A>,
+    /// Normal force of obstacles on each particle at the end of the latest step, N: friction of the next begins with it. Empty
+    /// where nothing was touched, and where no implicit steps solve the cloth.
+    pub contact_load: Vec<f32>,
 }
 
 impl Particles {
@@ -33,6 +36,7 @@ impl Particles {
             velocity: vec![Vec3A::ZERO; count],
             inverse_mass: vec![0.0; count],
             force: vec![Vec3A::ZERO; count],
+            contact_load: Vec::new(),
         };
         particles.set_masses(topology, material, |_| false);
         particles

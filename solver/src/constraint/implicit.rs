@@ -34,7 +34,8 @@ use fearless_simd::{Level, Simd, dispatch};
 use crate::{
     constraint::{
         implicit::{
-            direction::Direction, edge::EdgeTangent, face::FaceTangent, preconditioner::Preconditioner, vectors::Masses,
+            contact::ImplicitContacts, direction::Direction, edge::EdgeTangent, face::FaceTangent,
+            preconditioner::Preconditioner, vectors::Masses,
         },
         strand::law::DirectionModuli,
         unstructured::bend::{
@@ -53,6 +54,7 @@ use crate::{
     },
 };
 
+pub(crate) mod contact;
 mod direction;
 mod edge;
 mod face;
@@ -90,6 +92,10 @@ pub(crate) struct ImplicitBuffers {
     preconditioner: Preconditioner,
     faces: Vec<FaceTangent>,
     edges: Vec<EdgeTangent>,
+    /// What touches obstacles.
+    pub contacts: ImplicitContacts,
+    /// Particles that are part of a body.
+    attached: Vec<u32>,
     /// Frames of packs of bends, where they need them.
     frames: Vec<BendFrames>,
     /// Packs of faces, and of bends, of which some corner doesn't fall with the cloth.
@@ -152,11 +158,18 @@ impl<'a> ImplicitSheet<'a> {
         buffers.masses.read(lanes, self.topology, ctx.material.density);
         let [stretch, bend] = stiffness(self.moduli, self.h);
         buffers.preconditioner.prepare(self.two_grid, &buffers.masses, ctx.material.density, stretch, bend);
-        let ImplicitBuffers { masses, preconditioner, held_faces, held_bends, fall, free_fall, .. } = &mut *buffers;
         let attached = |pin: &AttachedPin| ctx.pin_motions[pin.pin_motion as usize].particle;
-        let attached = || ctx.attached_pins.iter().map(attached);
-        preconditioner.rigid.prepare(self.two_grid, masses.held.iter().copied().chain(attached()));
-        *free_fall = ctx.gravity * (self.h * self.h);
+        buffers.attached.clear();
+        buffers.attached.extend(ctx.attached_pins.iter().map(attached));
+        buffers.free_fall = ctx.gravity * (self.h * self.h);
+        let ImplicitBuffers { masses, preconditioner, attached, .. } = &mut *buffers;
+        preconditioner.rigid.prepare(self.two_grid, masses.held.iter().chain(&*attached).copied());
+        self.let_fall(buffers);
+    }
+
+    /// Finds how components that something holds fall, and what doesn't fall along with them.
+    fn let_fall(&self, buffers: &mut ImplicitBuffers) {
+        let ImplicitBuffers { masses, preconditioner, held_faces, held_bends, fall, free_fall, attached, .. } = buffers;
         let [x, y, z] = free_fall.to_array();
         for (i, (way, mass)) in fall.way.iter_mut().zip(&masses.mass).enumerate() {
             *way = if mass[0] > 0.0 && !preconditioner.rigid.is_free(self.two_grid, i) {
@@ -166,7 +179,7 @@ impl<'a> ImplicitSheet<'a> {
             };
         }
         // What is part of a body falls with it.
-        attached().for_each(|particle| fall.way[particle as usize] = [0.0; 4]);
+        attached.iter().for_each(|&particle| fall.way[particle as usize] = [0.0; 4]);
         let nobody = self.topology.particle_count() as u32;
         let is_still = |particle: u32| fall.way[particle as usize] == [0.0; 4];
         let is_held = |particles: &[u32]| {
@@ -208,6 +221,12 @@ impl<'a> ImplicitSheet<'a> {
         buffers: &mut ImplicitBuffers,
     ) {
         let GatheredParticles { now, before } = gathered;
+        let ImplicitBuffers { masses, preconditioner, free_fall, contacts, .. } = &mut *buffers;
+        contacts.linearise(now, before, masses, *free_fall, self.h);
+        let touching = contacts.resistances().map(|(particle, _)| particle);
+        if preconditioner.rigid.hold_components(self.two_grid, touching) {
+            self.let_fall(buffers);
+        }
         let ImplicitBuffers { masses, preconditioner, free_fall, fall, inertia, .. } = &mut *buffers;
         let rigid = &mut preconditioner.rigid;
         // Who falls together isn't strained.
@@ -222,10 +241,10 @@ impl<'a> ImplicitSheet<'a> {
         rigid.begin(self.two_grid, now, masses);
         rigid.remove_free(self.two_grid, masses, &mut inertia.way);
         self.linearise(level, now, before, buffers);
-        let ImplicitBuffers { preconditioner, faces, held_faces, .. } = &mut *buffers;
+        let ImplicitBuffers { preconditioner, faces, held_faces, contacts, .. } = &mut *buffers;
         let held = held_faces.iter().map(|&i| (&self.topology.face_packs[i as usize], &faces[i as usize]));
-        preconditioner.rigid.hold(self.two_grid, now, held, face::coupling(self.laws[0]));
-        let ImplicitBuffers { masses, preconditioner, fall, inertia, residual, gradient, correction, .. } =
+        preconditioner.rigid.hold(self.two_grid, now, held, face::coupling(self.laws[0]), contacts.resistances());
+        let ImplicitBuffers { masses, preconditioner, fall, inertia, residual, gradient, correction, contacts, .. } =
             &mut *buffers;
         // Begins with the fall: the masses times it are the gravity that is left to be done.
         correction.clone_from(&fall.way);
@@ -237,8 +256,9 @@ impl<'a> ImplicitSheet<'a> {
             dispatch!(level, simd => vectors::add_part(simd, 1.0, gradient, residual));
         }
         dispatch!(level, simd => vectors::add_masses(simd, masses, &fall.way, &mut fall.product));
-        // What is held doesn't fall: if that had to be undone along the same direction, it would take the motion with it.
-        let held = (-HELD * inertia.step(level, residual)).clamp(0.0, 1.0);
+        // What is held doesn't fall: if that had to be undone along the same direction, it would take the motion with it. A few
+        // particles that touch something are stiff enough for that, where all others swing.
+        let held = if contacts.is_empty() { (-HELD * inertia.step(level, residual)).clamp(0.0, 1.0) } else { 1.0 };
         let fallen = [&fall.way[..], &fall.product[..]];
         dispatch!(level, simd => vectors::advance(simd, -held, fallen, [correction, residual]));
         dispatch!(level, simd => vectors::add_part(simd, -held, &fall.way, &mut inertia.way));
@@ -246,9 +266,9 @@ impl<'a> ImplicitSheet<'a> {
         inertia.go(level, [correction, residual]);
         buffers.latest.clear();
         for _ in 0..ITERATIONS {
-            let ImplicitBuffers { masses, preconditioner, inertia, latest, residual, preconditioned, .. } =
+            let ImplicitBuffers { masses, preconditioner, inertia, latest, residual, preconditioned, contacts, .. } =
                 &mut *buffers;
-            dispatch!(level, simd => preconditioner.apply(simd, self.two_grid, masses, residual, preconditioned));
+            dispatch!(level, simd => preconditioner.apply(simd, self.two_grid, masses, contacts, residual, preconditioned));
             // In exact numbers, it is conjugate to all directions but these two.
             latest.turn_to(level, preconditioned, inertia);
             self.multiply(level, buffers);
@@ -256,14 +276,27 @@ impl<'a> ImplicitSheet<'a> {
             latest.go(level, [correction, residual]);
         }
         vectors::go(&buffers.correction, self.farthest, now);
+        let ImplicitBuffers { contacts, correction, residual, .. } = buffers;
+        contacts.finish(before, [correction, residual], self.h, now);
     }
 
     /// The gradient of the energy at x + h v, what its second derivatives are made of, and their products with the way y - x and
     /// with the fall.
     fn linearise(&self, level: Level, now: &[[f32; 4]], before: &[[f32; 4]], buffers: &mut ImplicitBuffers) {
         let Self { topology, laws, .. } = self;
-        let ImplicitBuffers { masses, faces, edges, frames, held_faces, held_bends, fall, inertia, gradient, .. } =
-            buffers;
+        let ImplicitBuffers {
+            masses,
+            faces,
+            edges,
+            frames,
+            held_faces,
+            held_bends,
+            fall,
+            inertia,
+            gradient,
+            contacts,
+            ..
+        } = buffers;
         gradient.fill([0.0; 4]);
         inertia.product.fill([0.0; 4]);
         fall.product.fill([0.0; 4]);
@@ -286,6 +319,9 @@ impl<'a> ImplicitSheet<'a> {
             tangent.multiply(&inertia.way, &mut inertia.product);
             tangent.multiply(&fall.way, &mut fall.product);
         }
+        contacts.pull(now, before, gradient);
+        contacts.multiply(&inertia.way, &mut inertia.product);
+        contacts.multiply(&fall.way, &mut fall.product);
         if let Some(law) = self.bend {
             dispatch!(level, simd => self.pull_bends(simd, law, now, before, gradient, frames));
             dispatch!(level, simd => self.multiply_bends(simd, law, None, frames, inertia));
@@ -296,8 +332,9 @@ impl<'a> ImplicitSheet<'a> {
 
     /// The matrix times the latest direction.
     fn multiply(&self, level: Level, buffers: &mut ImplicitBuffers) {
-        let ImplicitBuffers { masses, faces, edges, frames, latest, .. } = buffers;
+        let ImplicitBuffers { masses, faces, edges, frames, latest, contacts, .. } = buffers;
         latest.product.fill([0.0; 4]);
+        contacts.multiply(&latest.way, &mut latest.product);
         let packs = &self.topology.face_packs;
         dispatch!(level, simd => face::multiply(simd, packs, faces, self.laws[0], &latest.way, &mut latest.product));
         edges.iter().for_each(|tangent| tangent.multiply(&latest.way, &mut latest.product));

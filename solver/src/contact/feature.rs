@@ -145,6 +145,8 @@ pub(crate) trait ClothInStep {
     fn longest_edge(&self) -> f32;
     /// Whether an obstacle may be touched.
     fn is_near(&self) -> bool;
+    /// Takes note of whether its triangles and edges may meet obstacles that its particles don't.
+    fn set_meets_features(&mut self, meets_features: bool);
 
     /// Whether it meets itself or other cloths.
     fn collides(&self) -> bool {
@@ -193,12 +195,14 @@ pub struct FeatureContacts {
 
 impl FeatureContacts {
     /// Begins a step: nothing is known yet. Returns whether there may be anything to do.
-    pub fn begin(&mut self, cloths: &[impl ClothInStep]) -> bool {
+    pub fn begin(&mut self, cloths: &mut [impl ClothInStep]) -> bool {
         self.is_begun = false;
         self.forget();
         let mut is_needed = cloths.iter().any(ClothInStep::collides);
-        for (number, cloth) in cloths.iter().enumerate() {
-            is_needed |= cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
+        for (number, cloth) in cloths.iter_mut().enumerate() {
+            let meets_features = cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
+            cloth.set_meets_features(meets_features);
+            is_needed |= meets_features;
         }
         is_needed
     }

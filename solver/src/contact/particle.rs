@@ -6,6 +6,7 @@ use bevy_math::{Isometry3d, Quat, Vec3A};
 use fearless_simd::{dispatch, f32x8, mask32x8, prelude::*};
 
 use crate::{
+    constraint::implicit::contact::PredictedContact,
     contact::{
         body::Bodies,
         broad_phase::{BroadPhase, CandidateRange, STRETCH},
@@ -20,7 +21,7 @@ use crate::{
     input::StepContext,
     layout::{
         points::Block,
-        simd::{SimdLevel, Vec3x8, lane},
+        simd::{LANES, Lane, SimdLevel, Vec3x8, lane},
     },
     particles::lanes::{Lanes, Run},
     shape::{Shape, Solid},
@@ -37,10 +38,45 @@ pub(crate) use crate::contact::particle::query::DistanceQuery;
 /// Returns the number of contacts.
 pub(crate) fn project(
     lanes: &mut Lanes,
+    around: (&mut BroadPhase, &mut [MeshContacts], &mut Bodies),
+    ctx: &StepContext,
+    span: Range<f32>,
+    h: f32,
+    simd_level: SimdLevel,
+) -> u32 {
+    pass_obstacles(lanes, around, ctx, span, h, None, simd_level)
+}
+
+/// Finds the particles that would come into obstacles within the part `span` of the step, a substep of `h` seconds: from where they
+/// were before it to where they are, and a free fall farther. Moves nothing, and leaves out obstacles that are bodies: how far
+/// these are pushed is not known yet.
+pub(crate) fn predict(
+    lanes: &mut Lanes,
+    around: (&mut BroadPhase, &mut [MeshContacts], &mut Bodies),
+    ctx: &StepContext,
+    span: Range<f32>,
+    h: f32,
+    contacts: &mut Vec<PredictedContact>,
+    simd_level: SimdLevel,
+) {
+    let prediction = Prediction { contacts, free_fall: ctx.gravity * (h * h) };
+    pass_obstacles(lanes, around, ctx, span, h, Some(prediction), simd_level);
+}
+
+/// Where contacts are predicted, instead of projected.
+struct Prediction<'a> {
+    contacts: &'a mut Vec<PredictedContact>,
+    /// Way of a free fall within the substep, m.
+    free_fall: Vec3A,
+}
+
+fn pass_obstacles(
+    lanes: &mut Lanes,
     (near, known, bodies): (&mut BroadPhase, &mut [MeshContacts], &mut Bodies),
     ctx: &StepContext,
     span: Range<f32>,
     h: f32,
+    mut prediction: Option<Prediction>,
     simd_level: SimdLevel,
 ) -> u32 {
     near.follow(lanes, ctx, span.clone(), bodies, simd_level);
@@ -49,10 +85,16 @@ pub(crate) fn project(
     for number in 0..near.obstacles.len() {
         let obstacle = near.obstacles[number].obstacle;
         let it = &ctx.obstacles[obstacle];
+        if prediction.is_some() && it.body.is_some() {
+            continue;
+        }
         let poses @ [start, end] = bodies.poses(ctx, obstacle, span.clone());
         let sweep = ObstacleSweep::new(it, poses, ctx, h);
         let stretches = near.stretches(number);
-        let mut past = ParticleProjector { sweep, obstacle, bodies, run: &mut run, stretches, simd_level };
+        let prediction = prediction
+            .as_mut()
+            .map(|Prediction { contacts, free_fall }| Prediction { contacts, free_fall: *free_fall });
+        let mut past = ParticleProjector { sweep, prediction, obstacle, bodies, run: &mut run, stretches, simd_level };
         contacts += match &it.shape {
             Shape::Solid(solid) => {
                 let mut solid = *solid;
@@ -97,6 +139,7 @@ pub(crate) struct CandidateRanges<'a> {
 /// A cloth on its way past an obstacle.
 struct ParticleProjector<'a, 'b> {
     sweep: ObstacleSweep,
+    prediction: Option<Prediction<'a>>,
     /// Number of the obstacle.
     obstacle: usize,
     bodies: &'a mut Bodies,
@@ -124,6 +167,10 @@ pub(crate) struct Contacts8<S: Simd> {
     slide: Vec3x8<S>,
     /// Which lanes see another side of the shape than before.
     swept: u64,
+    /// Which are behind the surface, or would be after a free fall, if contacts are predicted.
+    predicted: u64,
+    /// Way of the surface within the substep, m.
+    surface_way: Vec3x8<S>,
 }
 
 impl ParticleProjector<'_, '_> {
@@ -145,10 +192,11 @@ impl ParticleProjector<'_, '_> {
         let mut frame = C::new(simd, &self.sweep);
         let zero = f32x8::splat(simd, 0.0);
         let (mut way, mut drift) = self.ways();
+        let fall = self.prediction.as_ref().map_or(0.0, |prediction| prediction.free_fall.length());
         let mut contacts = 0;
         for reachable in self.stretches.reachable {
             let mut moved = self.stretches.moved[reachable.stretch];
-            if reachable.clearance > moved + way {
+            if reachable.clearance > moved + way + fall {
                 continue;
             }
             let mut farthest = zero;
@@ -160,6 +208,10 @@ impl ParticleProjector<'_, '_> {
                 }
                 for _ in 0..query.passes() {
                     let Some(touching) = self.meet(simd, query, &frame, drift, block) else { break };
+                    if self.prediction.is_some() {
+                        self.predict(&touching, block);
+                        break;
+                    }
                     let Contacts8 { touches, mut swept, .. } = touching;
                     let known = contacts;
                     if touches.any_true() {
@@ -188,9 +240,33 @@ impl ParticleProjector<'_, '_> {
                     }
                 }
             }
+            if self.prediction.is_some() {
+                continue;
+            }
             self.stretches.moved[reachable.stretch] = farthest.reduce_max().sqrt().max(moved);
         }
         contacts
+    }
+
+    /// Adds the contacts that are predicted in a block.
+    #[inline(always)]
+    fn predict<S: Simd>(&mut self, touching: &Contacts8<S>, block: usize) {
+        let (Some(Prediction { contacts, .. }), mut left) = (&mut self.prediction, touching.predicted) else { return };
+        if left == 0 {
+            return;
+        }
+        let lanes = |Vec3x8 { x, y, z }: Vec3x8<S>| -> [Lane; 3] { [x.into(), y.into(), z.into()] };
+        let (normals, ways) = (lanes(touching.normal), lanes(touching.surface_way));
+        while left != 0 {
+            let i = left.trailing_zeros() as usize;
+            left &= left - 1;
+            contacts.push(PredictedContact {
+                particle: (block * LANES + i) as u32,
+                normal: Vec3A::from(normals.map(|lanes| lanes[i])),
+                way: Vec3A::from(ways.map(|lanes| lanes[i])),
+                friction: self.sweep.friction,
+            });
+        }
     }
 
     /// Goes on from where the body has been pushed to.
@@ -229,7 +305,8 @@ impl ParticleProjector<'_, '_> {
         let after = query.sample(simd, local);
         // A particle that is farther away than it can have come this substep is left alone.
         let (depth, way) = (-after.distance + distance, place - before);
-        let beyond = (-depth - drift).max(zero);
+        let free_fall = self.prediction.as_ref().map_or(Vec3A::ZERO, |prediction| prediction.free_fall);
+        let beyond = (-depth - drift - free_fall.length()).max(zero);
         let is_near = inverse_mass.simd_gt(zero) & (beyond * beyond).simd_le(way.dot(way));
         if is_near.all_false() {
             return None;
@@ -245,7 +322,8 @@ impl ParticleProjector<'_, '_> {
         let most = f32x8::splat(simd, parting);
         let is_deep = was_inside.simd_gt(most);
         let normal = frame.turned(after.normal);
-        let way = frame.past(way, local + after.normal * depth) - frame.turned(query.own_way(simd, local));
+        let past = frame.past(way, local + after.normal * depth) - frame.turned(query.own_way(simd, local));
+        let fallen = depth - normal.dot(Vec3x8::splat(simd, free_fall.to_array()));
         Some(Contacts8 {
             place,
             before,
@@ -255,8 +333,10 @@ impl ParticleProjector<'_, '_> {
             penetration: is_inside - old_depth,
             parted: old_depth.min((most - left).max(zero)),
             clamped: is_deep.select((was_inside - depth - most).max(zero), zero),
-            slide: way - normal * way.dot(normal),
+            slide: past - normal * past.dot(normal),
             swept: (is_near & !sees_the_same).to_bitmask(),
+            predicted: (is_near & sees_the_same & fallen.simd_gt(zero)).to_bitmask(),
+            surface_way: way - past,
         })
     }
 

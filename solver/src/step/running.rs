@@ -53,6 +53,9 @@ pub(super) struct Running<'a> {
     /// Whether threads that share the work have finished the substep.
     is_finished: bool,
     contacts: u32,
+    /// Whether triangles and edges may meet obstacles that particles don't. What carries the cloth there is no particle, and no
+    /// contact is predicted: particles that are held beside edges that aren't would tear at them.
+    meets_features: bool,
     /// Pairs of features that touched in the latest substep.
     pub touched: u32,
 }
@@ -97,6 +100,7 @@ impl<'a> Running<'a> {
             slack: ctx.slack(),
         };
         scratch.air.sample(particles, ctx);
+        scratch.implicit.contacts.begin(&particles.contact_load, particles.len());
         substep.prepare(scratch);
         scratch.body_attachments.rest(&mut scratch.lanes);
         Self {
@@ -114,6 +118,7 @@ impl<'a> Running<'a> {
             has_moved,
             is_finished: false,
             contacts: 0,
+            meets_features: false,
             touched: 0,
         }
     }
@@ -146,7 +151,13 @@ impl<'a> Running<'a> {
         self.is_finished = false;
         match (substep.implicit, ctx.settings.method) {
             (Some(sheet), _) => {
-                grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
+                grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
+                let Scratch { lanes, broad_phase, faces, bodies, implicit, simd_level, .. } = &mut **scratch;
+                let predicted = &mut implicit.contacts.predicted;
+                predicted.clear();
+                if substep.is_near && !self.meets_features {
+                    contact::predict(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, predicted, *simd_level);
+                }
                 substep.solve_implicit(sheet, scratch);
             }
             (None, Method::Strands) => {
@@ -171,8 +182,10 @@ impl<'a> Running<'a> {
         let ctx = substep.ctx;
         if substep.is_near {
             self.contacts = {
-                let Scratch { lanes, broad_phase, faces, bodies, simd_level, .. } = &mut **scratch;
-                contact::project(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, *simd_level)
+                let Scratch { lanes, broad_phase, faces, bodies, implicit, simd_level, .. } = &mut **scratch;
+                let pushed = contact::project(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, *simd_level);
+                let held = if substep.implicit.is_some() { implicit.contacts.len() as u32 } else { 0 };
+                pushed.max(held)
             };
         }
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
@@ -187,7 +200,11 @@ impl<'a> Running<'a> {
     pub fn end(self) -> StepReport {
         let Self { particles, scratch, substep, substeps, reason, contacts, touched, .. } = self;
         let contacts = contacts + touched;
-        let Scratch { lanes, steady_force, simd_level, .. } = scratch;
+        let Scratch { lanes, steady_force, implicit, simd_level, .. } = scratch;
+        match substep.implicit {
+            Some(_) => implicit.contacts.end(&mut particles.contact_load),
+            None => particles.contact_load.clear(),
+        }
         match substep.helpers {
             Some((pool, _)) => grid_substep::store(pool, lanes, particles, *simd_level),
             None => lanes.store(particles, *simd_level),
@@ -237,6 +254,10 @@ impl ClothInStep for Running<'_> {
 
     fn is_near(&self) -> bool {
         self.substep.is_near
+    }
+
+    fn set_meets_features(&mut self, meets_features: bool) {
+        self.meets_features = meets_features;
     }
 }
 

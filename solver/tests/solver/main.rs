@@ -15,6 +15,7 @@ mod golden;
 mod grabs;
 mod grain;
 mod implicit;
+mod implicit_contact;
 mod lattices;
 mod levels;
 mod memory;

@@ -6,6 +6,7 @@ use fearless_simd::{f32x4, prelude::*};
 
 use crate::{
     constraint::implicit::{
+        contact::ImplicitContacts,
         rigid::RigidMotions,
         vectors::{Masses, four},
     },
@@ -46,17 +47,19 @@ impl Preconditioner {
         self.coarse.resize(two_grid.coarse.len(), [0.0; 4]);
     }
 
-    /// Takes a residual (kg m) to a way, m.
+    /// Takes a residual (kg m) to a way, m, of particles with `contacts`.
     #[inline(always)]
     pub fn apply<S: Simd>(
         &mut self,
         simd: S,
         two_grid: &TwoGrid,
         masses: &Masses,
-        residual: &[[f32; 4]],
+        contacts: &mut ImplicitContacts,
+        residual: &mut [[f32; 4]],
         preconditioned: &mut [[f32; 4]],
     ) {
         let Self { factor, per_density, inverse_diagonal, is_moved, coarse, rigid } = self;
+        contacts.scale_residual(inverse_diagonal, residual);
         coarse.fill([0.0; 4]);
         let count = two_grid.interpolation.len();
         for i in 0..count {
@@ -75,6 +78,7 @@ impl Preconditioner {
             }
             preconditioned[i] = (sum * is_moved[i] + four(simd, &residual[i]) * inverse_diagonal[i]).into();
         }
+        contacts.scale_ways(inverse_diagonal, residual, preconditioned);
         rigid.add_held(two_grid, residual, preconditioned);
         rigid.remove_free(two_grid, masses, preconditioned);
     }

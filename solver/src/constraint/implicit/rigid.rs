@@ -50,9 +50,18 @@ impl RigidMotions {
     pub fn prepare(&mut self, two_grid: &TwoGrid, held: impl Iterator<Item = u32>) {
         self.components.clear();
         self.components.resize(two_grid.component_count, Component::default());
-        for particle in held {
-            self.components[two_grid.component[particle as usize] as usize].is_held = true;
+        self.hold_components(two_grid, held);
+    }
+
+    /// Counts the components of some particles as held. Says whether that is new of any.
+    pub fn hold_components(&mut self, two_grid: &TwoGrid, particles: impl Iterator<Item = u32>) -> bool {
+        let mut is_new = false;
+        for particle in particles {
+            let component = &mut self.components[two_grid.component[particle as usize] as usize];
+            is_new |= !component.is_held;
+            component.is_held = true;
         }
+        is_new
     }
 
     /// Whether nothing holds the component that a particle belongs to.
@@ -95,13 +104,15 @@ impl RigidMotions {
         self.invert(false);
     }
 
-    /// Adds the stiffness of the `packs` of faces that hold the components, with their tangents and a `coupling` of G h², kg.
+    /// Adds the stiffness of the `packs` of faces that hold the components, with their tangents and a `coupling` of G h², kg, and
+    /// of `contacts` that hold particles.
     pub fn hold<'a>(
         &mut self,
         two_grid: &TwoGrid,
         now: &[[f32; 4]],
         packs: impl Iterator<Item = (&'a FacePack, &'a FaceTangent)>,
         coupling: f32,
+        contacts: impl Iterator<Item = (u32, impl Fn(Vec3A) -> Vec3A)>,
     ) {
         let Self { components, arms } = self;
         for (pack, tangent) in packs {
@@ -121,6 +132,10 @@ impl RigidMotions {
                 let stress = |way: Vec3A| tangent.resist(lane, way, [by_u, by_v], g);
                 add_stiffness(&mut component.matrix, middle - component.middle, stress);
             }
+        }
+        for (particle, stress) in contacts {
+            let component = &mut components[two_grid.component[particle as usize] as usize];
+            add_stiffness(&mut component.matrix, point(&now[particle as usize]) - component.middle, stress);
         }
         self.invert(true);
     }
