@@ -222,7 +222,7 @@ impl<'a> ImplicitSheet<'a> {
     ) {
         let GatheredParticles { now, before } = gathered;
         let ImplicitBuffers { masses, preconditioner, free_fall, contacts, .. } = &mut *buffers;
-        contacts.linearise(now, before, masses, *free_fall, self.h);
+        contacts.linearise(now, before, masses, &self.topology.areas, *free_fall, self.h);
         let touching = contacts.resistances().map(|(particle, _)| particle);
         if preconditioner.rigid.hold_components(self.two_grid, touching) {
             self.let_fall(buffers);

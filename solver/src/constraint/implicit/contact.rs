@@ -29,6 +29,11 @@ const CREEP: f32 = 3e-3;
 /// A particle that slid by less than this share of that is put back: friction has held it.
 const STUCK: f32 = 0.8;
 
+/// Largest free fall within a substep, as a share of the cell of the particle: beyond it, only contact after the step stops it.
+///
+/// Cells of half a millimetre that meet something would be turned too far for one linear step, and be thrown off.
+const LARGEST_FALL: f32 = 0.05;
+
 /// How fast the normal force that friction knows follows the latest one: a share a substep.
 const FOLLOWING: f32 = 0.25;
 
@@ -110,6 +115,7 @@ impl ImplicitContacts {
         now: &mut [[f32; 4]],
         before: &[[f32; 4]],
         masses: &Masses,
+        areas: &[f32],
         free_fall: Vec3A,
         h: f32,
     ) {
@@ -121,7 +127,8 @@ impl ImplicitContacts {
             let mass = masses.mass[i][0];
             let past = contact.past(now, before);
             let out = contact.normal.dot(past);
-            if mass == 0.0 || out + contact.normal.dot(free_fall).min(0.0) >= 0.0 {
+            let is_tiny = free_fall.length_squared() > LARGEST_FALL * LARGEST_FALL * areas[i];
+            if mass == 0.0 || is_tiny || out + contact.normal.dot(free_fall).min(0.0) >= 0.0 {
                 continue;
             }
             add(&mut now[i], contact.normal * -out);
