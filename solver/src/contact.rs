@@ -5,7 +5,7 @@
 //! Coulomb's at the level of positions: the way along the surface is cut by at most `friction` times the way that the
 //! contact pushed (Müller et al., "Position Based Dynamics", 2007, section 3.6, with the normal push in place of a
 //! damping constant). There is no restitution.
-//! Where [implicit steps](crate::constraint::implicit::contact) solve the cloth, contacts are also predicted before it is solved.
+//! Where implicit steps solve the cloth (`constraint/implicit/contact.rs`), contacts are also predicted before it is solved.
 
 pub(crate) mod body;
 pub(crate) mod broad_phase;
