@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo run --all-features --example garments
-//! cargo run --all-features --example garments -- dropped --capture captures --frames 24 --every 24
+//! cargo run --all-features --example garments -- dropped --capture captures --frames 300 --every 300
 //! ```
 
 #[path = "../common/mod.rs"]
