@@ -70,6 +70,7 @@ struct Prediction<'a> {
     free_fall: Vec3A,
 }
 
+/// Lets all particles pass all obstacles, whether their contacts are projected or predicted.
 fn pass_obstacles(
     lanes: &mut Lanes,
     (near, known, bodies): (&mut BroadPhase, &mut [MeshContacts], &mut Bodies),
@@ -167,8 +168,10 @@ pub(crate) struct Contacts8<S: Simd> {
     slide: Vec3x8<S>,
     /// Which lanes see another side of the shape than before.
     swept: u64,
-    /// Which are behind the surface, or would be after a free fall, if contacts are predicted.
-    predicted: u64,
+    /// Those that are near the surface, on the same side of it as before.
+    is_beside: mask32x8<S>,
+    /// How deep each is behind it, m.
+    depth: f32x8<S>,
     /// Way of the surface within the substep, m.
     surface_way: Vec3x8<S>,
 }
@@ -207,9 +210,9 @@ impl ParticleProjector<'_, '_> {
                     continue;
                 }
                 for _ in 0..query.passes() {
-                    let Some(touching) = self.meet(simd, query, &frame, drift, block) else { break };
+                    let Some(touching) = self.meet(simd, query, &frame, drift + fall, block) else { break };
                     if self.prediction.is_some() {
-                        self.predict(&touching, block);
+                        self.predict(simd, &touching, block);
                         break;
                     }
                     let Contacts8 { touches, mut swept, .. } = touching;
@@ -250,13 +253,13 @@ impl ParticleProjector<'_, '_> {
 
     /// Adds the contacts that are predicted in a block.
     #[inline(always)]
-    fn predict<S: Simd>(&mut self, touching: &Contacts8<S>, block: usize) {
-        let (Some(Prediction { contacts, .. }), mut left) = (&mut self.prediction, touching.predicted) else { return };
-        if left == 0 {
-            return;
-        }
+    fn predict<S: Simd>(&mut self, simd: S, touching: &Contacts8<S>, block: usize) {
+        let Some(Prediction { contacts, free_fall }) = &mut self.prediction else { return };
+        let Contacts8 { is_beside, depth, normal, surface_way, .. } = *touching;
+        let fallen = depth - normal.dot(Vec3x8::splat(simd, free_fall.to_array()));
+        let mut left = (is_beside & fallen.simd_gt(f32x8::splat(simd, 0.0))).to_bitmask();
         let lanes = |Vec3x8 { x, y, z }: Vec3x8<S>| -> [Lane; 3] { [x.into(), y.into(), z.into()] };
-        let (normals, ways) = (lanes(touching.normal), lanes(touching.surface_way));
+        let (normals, ways) = (lanes(normal), lanes(surface_way));
         while left != 0 {
             let i = left.trailing_zeros() as usize;
             left &= left - 1;
@@ -305,8 +308,7 @@ impl ParticleProjector<'_, '_> {
         let after = query.sample(simd, local);
         // A particle that is farther away than it can have come this substep is left alone.
         let (depth, way) = (-after.distance + distance, place - before);
-        let free_fall = self.prediction.as_ref().map_or(Vec3A::ZERO, |prediction| prediction.free_fall);
-        let beyond = (-depth - drift - free_fall.length()).max(zero);
+        let beyond = (-depth - drift).max(zero);
         let is_near = inverse_mass.simd_gt(zero) & (beyond * beyond).simd_le(way.dot(way));
         if is_near.all_false() {
             return None;
@@ -323,7 +325,6 @@ impl ParticleProjector<'_, '_> {
         let is_deep = was_inside.simd_gt(most);
         let normal = frame.turned(after.normal);
         let past = frame.past(way, local + after.normal * depth) - frame.turned(query.own_way(simd, local));
-        let fallen = depth - normal.dot(Vec3x8::splat(simd, free_fall.to_array()));
         Some(Contacts8 {
             place,
             before,
@@ -335,7 +336,8 @@ impl ParticleProjector<'_, '_> {
             clamped: is_deep.select((was_inside - depth - most).max(zero), zero),
             slide: past - normal * past.dot(normal),
             swept: (is_near & !sees_the_same).to_bitmask(),
-            predicted: (is_near & sees_the_same & fallen.simd_gt(zero)).to_bitmask(),
+            is_beside: is_near & sees_the_same,
+            depth,
             surface_way: way - past,
         })
     }

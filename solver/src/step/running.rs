@@ -100,7 +100,9 @@ impl<'a> Running<'a> {
             slack: ctx.slack(),
         };
         scratch.air.sample(particles, ctx);
-        scratch.implicit.contacts.begin(&particles.contact_load, particles.len());
+        if substep.implicit.is_some() {
+            scratch.implicit.contacts.begin(&particles.contact_load, particles.len());
+        }
         substep.prepare(scratch);
         scratch.body_attachments.rest(&mut scratch.lanes);
         Self {

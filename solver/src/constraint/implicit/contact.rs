@@ -14,9 +14,9 @@
 //! λ is what is left of the residual along the normal: also where few iterations haven't converged, it is the force that would
 //! have moved the particle on.
 
-use bevy_math::{Vec3A, Vec4};
+use bevy_math::Vec3A;
 
-use crate::constraint::implicit::vectors::Masses;
+use crate::constraint::implicit::vectors::{Masses, extended, point};
 
 /// Stiffness α along the normal, in masses of the particle: no unit.
 ///
@@ -57,7 +57,7 @@ pub(crate) struct ImplicitContacts {
     pub predicted: Vec<PredictedContact>,
     /// What does: a particle's are next to each other.
     tangents: Vec<ContactTangent>,
-    /// Normal force on each particle, N.
+    /// Normal force on each particle, N. Empty where nothing touched in the substep before.
     load: Vec<f32>,
     /// Residuals while they are scaled, kg m.
     unscaled: Vec<[f32; 4]>,
@@ -83,13 +83,16 @@ impl ImplicitContacts {
         unscaled.clear();
         unscaled.reserve(count);
         self.load.clear();
-        self.load.extend_from_slice(&load[..load.len().min(count)]);
-        self.load.resize(count, 0.0);
+        self.load.reserve(count);
+        self.load.extend_from_slice(load);
     }
 
     /// Hands over the normal forces that the next step begins with.
     pub fn end(&self, load: &mut Vec<f32>) {
-        load.clone_from(&self.load);
+        // Once, however much will touch.
+        load.clear();
+        load.reserve(self.load.capacity());
+        load.extend_from_slice(&self.load);
     }
 
     /// The number of contacts.
@@ -119,6 +122,9 @@ impl ImplicitContacts {
         free_fall: Vec3A,
         h: f32,
     ) {
+        if !self.predicted.is_empty() {
+            self.load.resize(areas.len(), 0.0);
+        }
         // Which of several obstacles was found first is no matter.
         self.predicted.sort_unstable_by_key(|contact| contact.particle);
         self.tangents.clear();
@@ -188,6 +194,9 @@ impl ImplicitContacts {
         now: &mut [[f32; 4]],
     ) {
         let Self { tangents, load, .. } = self;
+        if tangents.is_empty() {
+            return load.clear();
+        }
         let mut rest = &tangents[..];
         for (i, load) in load.iter_mut().enumerate() {
             let count = rest.iter().take_while(|tangent| tangent.contact.particle as usize == i).count();
@@ -235,14 +244,6 @@ impl ContactTangent {
         let normal = self.contact.normal;
         vector * across + normal * (normal.dot(vector) * (along - across))
     }
-}
-
-fn point(values: &[f32; 4]) -> Vec3A {
-    Vec3A::from_vec4(Vec4::from_array(*values))
-}
-
-fn extended(point: Vec3A) -> [f32; 4] {
-    Vec4::from((point, 0.0)).to_array()
 }
 
 fn add(sum: &mut [f32; 4], more: Vec3A) {

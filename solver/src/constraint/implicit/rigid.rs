@@ -7,10 +7,13 @@
 //! Nothing holds a free component: its six numbers follow from the loads alone, and are solved for first. All directions of
 //! search are then without them, so that momentum stays, to rounding, and angular momentum nearly.
 
-use bevy_math::{Vec3A, Vec4};
+use bevy_math::Vec3A;
 
 use crate::{
-    constraint::implicit::{face::FaceTangent, vectors::Masses},
+    constraint::implicit::{
+        face::FaceTangent,
+        vectors::{Masses, extended, point},
+    },
     layout::simd::LANES,
     topology::{face_pack::FacePack, two_grid::TwoGrid},
 };
@@ -201,17 +204,6 @@ impl RigidMotions {
             }
         }
     }
-}
-
-/// A point, with nothing after it.
-fn extended(point: Vec3A) -> [f32; 4] {
-    Vec4::from((point, 0.0)).to_array()
-}
-
-/// A point without what comes after it.
-#[inline(always)]
-fn point(values: &[f32; 4]) -> Vec3A {
-    Vec3A::from_vec4(Vec4::from_array(*values))
 }
 
 /// Adds a mass (kg) at an `arm` (m) from the middle.

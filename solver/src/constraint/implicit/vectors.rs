@@ -90,7 +90,7 @@ pub(super) fn residual<S: Simd>(simd: S, [one, two]: [&[[f32; 4]]; 2], masses: &
 pub(super) fn scaled(force: &Points, scale: f32, masses: &Masses, scaled: &mut [[f32; 4]]) {
     for (i, (scaled, mass)) in scaled.iter_mut().zip(&masses.mass).enumerate() {
         let force = if mass[0] > 0.0 { force.get(i) * scale } else { Vec3A::ZERO };
-        *scaled = Vec4::from((force, 0.0)).to_array();
+        *scaled = extended(force);
     }
 }
 
@@ -209,4 +209,15 @@ pub(super) fn multiply_bends<S: Simd>(
 #[inline(always)]
 pub(super) fn four<S: Simd>(simd: S, point: &[f32; 4]) -> f32x4<S> {
     f32x4::simd_from(simd, *point)
+}
+
+/// A point, with nothing after it.
+pub(super) fn extended(point: Vec3A) -> [f32; 4] {
+    Vec4::from((point, 0.0)).to_array()
+}
+
+/// A point without what comes after it.
+#[inline(always)]
+pub(super) fn point(values: &[f32; 4]) -> Vec3A {
+    Vec3A::from_vec4(Vec4::from_array(*values))
 }
