@@ -42,7 +42,10 @@ pub use crate::{
     layout::simd::SimdLevel,
     material::{Elasticity, Material, Moduli, SpringConstants, SpringLaw},
     measure::{Energy, Strain},
-    particles::Particles,
+    particles::{
+        Particles,
+        contact_load::{ContactLoad, FeatureLoad},
+    },
     scratch::Scratch,
     shape::{Ellipsoid, MeshShape, Shape, Solid, TaperedCapsule, TriangleMesh},
     step::{

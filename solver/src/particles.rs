@@ -4,8 +4,9 @@ use core::ops::Range;
 
 use bevy_math::Vec3A;
 
-use crate::{material::Material, topology::Topology};
+use crate::{material::Material, particles::contact_load::ContactLoad, topology::Topology};
 
+pub(crate) mod contact_load;
 pub(crate) mod gathered;
 pub(crate) mod lanes;
 
@@ -22,9 +23,8 @@ pub struct Particles {
     pub inverse_mass: Vec<f32>,
     /// External force, N, constant over a step. The step doesn't clear it.
     pub force: Vec<Vec3A>,
-    /// Normal force of obstacles on each particle at the end of the latest step, N: friction of the next begins with it. Empty
-    /// where nothing was touched, and where no implicit steps solve the cloth.
-    pub contact_load: Vec<f32>,
+    /// Normal forces of contacts at the end of the latest step.
+    pub contact_load: ContactLoad,
 }
 
 impl Particles {
@@ -36,7 +36,7 @@ impl Particles {
             velocity: vec![Vec3A::ZERO; count],
             inverse_mass: vec![0.0; count],
             force: vec![Vec3A::ZERO; count],
-            contact_load: Vec::new(),
+            contact_load: ContactLoad::default(),
         };
         particles.set_masses(topology, material, |_| false);
         particles

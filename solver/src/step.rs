@@ -94,9 +94,16 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut FeatureContacts) {
     for i in 0..substeps {
         let span = i as f32 / substeps as f32..(i + 1) as f32 / substeps as f32;
         for cloth in &mut *cloths {
-            cloth.advance(i, span.clone());
+            cloth.predict(i, span.clone());
         }
-        if may_touch && let Some(Substep { h, ctx, .. }) = cloths.first().map(|cloth| cloth.substep) {
+        let first = cloths.first().map(|cloth| cloth.substep).filter(|_| may_touch);
+        if let Some(Substep { h, ctx, .. }) = first {
+            touch.predict(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
+        }
+        for cloth in &mut *cloths {
+            cloth.solve(span.clone());
+        }
+        if let Some(Substep { h, ctx, .. }) = first {
             let touched = touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
             // Whose they are isn't known: they count once.
             cloths[0].touched = touched;
@@ -105,4 +112,5 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut FeatureContacts) {
             cloth.finish(span.clone());
         }
     }
+    touch.keep_loads(cloths);
 }

@@ -223,8 +223,7 @@ impl<'a> ImplicitSheet<'a> {
         let GatheredParticles { now, before } = gathered;
         let ImplicitBuffers { masses, preconditioner, free_fall, contacts, .. } = &mut *buffers;
         contacts.linearise(now, before, masses, &self.topology.areas, *free_fall, self.h);
-        let touching = contacts.resistances().map(|(particle, _)| particle);
-        if preconditioner.rigid.hold_components(self.two_grid, touching) {
+        if preconditioner.rigid.hold_components(self.two_grid, contacts.touching()) {
             self.let_fall(buffers);
         }
         let ImplicitBuffers { masses, preconditioner, free_fall, fall, inertia, .. } = &mut *buffers;
@@ -243,7 +242,7 @@ impl<'a> ImplicitSheet<'a> {
         self.linearise(level, now, before, buffers);
         let ImplicitBuffers { preconditioner, faces, held_faces, contacts, .. } = &mut *buffers;
         let held = held_faces.iter().map(|&i| (&self.topology.face_packs[i as usize], &faces[i as usize]));
-        preconditioner.rigid.hold(self.two_grid, now, held, face::coupling(self.laws[0]), contacts.resistances());
+        preconditioner.rigid.hold(self.two_grid, now, held, face::coupling(self.laws[0]), contacts.resistances(now));
         let ImplicitBuffers { masses, preconditioner, fall, inertia, residual, gradient, correction, contacts, .. } =
             &mut *buffers;
         // Begins with the fall: the masses times it are the gravity that is left to be done.
@@ -276,8 +275,8 @@ impl<'a> ImplicitSheet<'a> {
             latest.go(level, [correction, residual]);
         }
         vectors::go(&buffers.correction, self.farthest, now);
-        let ImplicitBuffers { contacts, correction, residual, .. } = buffers;
-        contacts.finish(before, [correction, residual], self.h, now);
+        let ImplicitBuffers { masses, contacts, correction, residual, .. } = buffers;
+        contacts.finish(before, [correction, residual], masses, self.h, now);
     }
 
     /// The gradient of the energy at x + h v, what its second derivatives are made of, and their products with the way y - x and

@@ -8,6 +8,7 @@ use core::ops::Range;
 use bevy_math::Vec3A;
 
 use crate::{
+    constraint::implicit::contact::PredictedContact,
     contact::{
         body::Bodies,
         feature::{
@@ -15,13 +16,14 @@ use crate::{
             narrow_phase::Displacements,
             obstacle::{ClothMotion, ObstaclePoint, ObstacleSearch},
             pair::{FeatureContact, FeaturePoints},
+            predict::PredictedPair,
             tangle::Tangle,
         },
     },
     geometry::bvh::{TriangleBvh, bounds::BvhBounds, traversal::Traversal},
     input::{Obstacle, SelfCollision, StepContext},
     layout::simd::SimdLevel,
-    particles::{Particles, lanes::Lanes},
+    particles::{Particles, contact_load::FeatureLoad, lanes::Lanes},
     shape::{Shape, sharp_features::Sharpness},
     topology::Topology,
 };
@@ -33,6 +35,7 @@ pub(crate) mod obstacle;
 pub(crate) mod obstacle_geometry;
 pub(crate) mod pair;
 pub(crate) mod positions;
+pub(crate) mod predict;
 pub(crate) mod sharp_feature_cache;
 pub(crate) mod tangle;
 
@@ -145,8 +148,16 @@ pub(crate) trait ClothInStep {
     fn longest_edge(&self) -> f32;
     /// Whether an obstacle may be touched.
     fn is_near(&self) -> bool;
-    /// Takes note of whether its triangles and edges may meet obstacles that its particles don't.
-    fn set_meets_features(&mut self, meets_features: bool);
+    /// Whether its step is implicit.
+    fn is_implicit(&self) -> bool;
+    /// The contacts that its implicit step solves.
+    fn predicted(&self) -> &[PredictedContact];
+    /// The list of them, to be added to.
+    fn predicted_mut(&mut self) -> &mut Vec<PredictedContact>;
+    /// Normal forces of its pairs before the latest search.
+    fn feature_loads(&self) -> &[FeatureLoad];
+    /// The list of them, to be made anew.
+    fn feature_loads_mut(&mut self) -> &mut Vec<FeatureLoad>;
 
     /// Whether it meets itself or other cloths.
     fn collides(&self) -> bool {
@@ -191,18 +202,20 @@ pub struct FeatureContacts {
     at_obstacle: ObstacleSearch,
     /// Whether there has been a search in this step.
     is_begun: bool,
+    /// Pairs that were to touch in this substep.
+    predicted: Vec<PredictedPair>,
+    /// Whether that has searched already.
+    is_searched: bool,
 }
 
 impl FeatureContacts {
     /// Begins a step: nothing is known yet. Returns whether there may be anything to do.
-    pub fn begin(&mut self, cloths: &mut [impl ClothInStep]) -> bool {
+    pub fn begin(&mut self, cloths: &[impl ClothInStep]) -> bool {
         self.is_begun = false;
         self.forget();
         let mut is_needed = cloths.iter().any(ClothInStep::collides);
-        for (number, cloth) in cloths.iter_mut().enumerate() {
-            let meets_features = cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
-            cloth.set_meets_features(meets_features);
-            is_needed |= meets_features;
+        for (number, cloth) in cloths.iter().enumerate() {
+            is_needed |= cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
         }
         is_needed
     }
@@ -213,13 +226,15 @@ impl FeatureContacts {
     }
 
     /// Looks for pairs in what is left of a step of `dt` seconds, of which the share `now` is over, if it is time to.
-    fn search(&mut self, cloths: &[impl ClothInStep], span: Range<f32>, dt: f32) {
+    fn search(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, dt: f32) {
         self.take_places(cloths);
         let is_known = self.is_begun && span.end <= self.searched.end && self.tangles.is_empty();
         if is_known && !self.has_come_off(span.start) && !self.has_body_come_off(cloths, span.start) {
             return;
         }
-        self.is_begun = true;
+        if core::mem::replace(&mut self.is_begun, true) {
+            self.keep_loads(cloths);
+        }
         self.take_velocities(cloths);
         let now = span.start;
         self.searched = now..self.horizon(cloths, span, dt);
@@ -251,6 +266,7 @@ impl FeatureContacts {
             points.resize(count, Vec3A::ZERO);
         }
         self.points.inverse_mass.resize(count, 0.0);
+        self.recall_loads(cloths);
     }
 
     /// Keeps where particles were when the substep began, for a search, and reads their velocities, as ways.
@@ -314,7 +330,12 @@ impl FeatureContacts {
     /// Keeps features apart within the part `span` (0..=1) of the step, a substep of `h` seconds. Returns the number of
     /// pairs that touched.
     pub fn solve(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, h: f32, dt: f32) -> u32 {
-        self.search(cloths, span.clone(), dt);
+        if self.is_searched {
+            self.read_loads(cloths);
+            self.take_places(cloths);
+        } else {
+            self.search(cloths, span.clone(), dt);
+        }
         let mut touched = 0;
         if !(self.pairs.is_empty() && self.tangles.is_empty()) {
             self.lead_fixed(cloths, span.clone());
@@ -322,7 +343,7 @@ impl FeatureContacts {
             let most_parted =
                 cloths.iter().map(|cloth| cloth.ctx().settings.max_depenetration_velocity).fold(0.0, f32::max) * h;
             for tangle in &self.tangles {
-                tangle.solve(&mut self.points, most_parted);
+                tangle.solve(&mut self.points, most_parted, h);
             }
             touched = match cloths.iter().any(|cloth| cloth.bodies().is_any()) {
                 true => self.solve_pairs_on_bodies(cloths, span.clone(), most_parted),

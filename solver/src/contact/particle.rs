@@ -263,12 +263,9 @@ impl ParticleProjector<'_, '_> {
         while left != 0 {
             let i = left.trailing_zeros() as usize;
             left &= left - 1;
-            contacts.push(PredictedContact {
-                particle: (block * LANES + i) as u32,
-                normal: Vec3A::from(normals.map(|lanes| lanes[i])),
-                way: Vec3A::from(ways.map(|lanes| lanes[i])),
-                friction: self.sweep.friction,
-            });
+            let [normal, way] = [normals, ways].map(|lists| Vec3A::from(lists.map(|lanes| lanes[i])));
+            let particle = (block * LANES + i) as u32;
+            contacts.push(PredictedContact::of_particle(particle, normal, way, self.sweep.friction));
         }
     }
 

@@ -1,7 +1,7 @@
 //! Triangles, their corners and edges, and a tree to find them in.
 //!
 //! The tree belongs to the rest shape and stays; only the boxes of its nodes follow the cloth. What is near along the
-//! cloth stays together in it, so a node is a patch, and a patch that faces one way all over can't touch itself
+//! cloth stays together in it, so most nodes are patches, and a patch that faces one way all over can't touch itself
 //! (Volino and Magnenat-Thalmann, "Efficient Self-Collision Detection on Smoothly Discretized Surface Animations Using
 //! Geometrical Shape Regularity", 1994).
 
@@ -11,6 +11,7 @@ use bevy_math::Vec3;
 use bevy_platform::collections::HashSet;
 
 pub(crate) mod bounds;
+mod patch;
 pub(crate) mod traversal;
 
 /// Triangles to a leaf, about.
@@ -45,7 +46,9 @@ pub struct TriangleBvh {
     /// Points that belong to the triangles of each leaf, leaf after leaf; and where those of each end.
     points: Vec<u32>,
     points_end: Vec<u32>,
-    /// Leaves that share a corner with each leaf, in their order, leaf after leaf; and where those of each end.
+    /// Whether each node is a patch.
+    is_patch: Vec<bool>,
+    /// Leaves that make up a patch with each leaf, in their order, leaf after leaf; and where those of each end.
     beside: Vec<u32>,
     beside_end: Vec<u32>,
     /// Number of leaves, a power of two. Node 1 is the root, and nodes 2 k and 2 k + 1 are within node k.
@@ -70,7 +73,7 @@ impl TriangleBvh {
         };
         let owned = triangles.iter().map(own).collect();
         let mut surface = Self { triangles, owned, leaves, ..Self::default() };
-        surface.find_neighbours(rest.len());
+        surface.find_neighbours();
         let lengths = || surface.edges().map(|[a, b]| rest[a as usize].distance(rest[b as usize]));
         let (sum, longest, count) = lengths()
             .fold((0.0, 0.0_f32, 0), |(sum, longest, count), length| (sum + length, longest.max(length), count + 1));
@@ -103,21 +106,28 @@ impl TriangleBvh {
         }
     }
 
-    /// Finds which leaves share a corner, and which points belong to each.
-    fn find_neighbours(&mut self, point_count: usize) {
-        let mut leaves_at: Vec<Vec<u32>> = vec![Vec::new(); point_count];
+    /// Finds which nodes are patches, which leaves are a patch together, and which points belong to each.
+    fn find_neighbours(&mut self) {
+        let fans = patch::fans(&self.triangles);
+        let mut parents = vec![0; fans.as_flattened().len()];
+        self.is_patch.push(false);
+        for node in 1..self.node_count() as u32 {
+            self.is_patch.push(patch::are_connected(&fans[self.of_node(node)], &mut parents));
+        }
+        let mut leaves_at: Vec<Vec<u32>> = vec![Vec::new(); parents.len()];
         let leaves = self.leaves as u32..2 * self.leaves as u32;
-        for leaf in leaves.clone() {
-            for &corner in self.triangles[self.of_leaf(leaf)].as_flattened() {
-                let at = &mut leaves_at[corner as usize];
+        for leaf in leaves.clone().filter(|&leaf| self.is_patch(leaf)) {
+            for &fan in fans[self.of_leaf(leaf)].as_flattened() {
+                let at = &mut leaves_at[fan as usize];
                 if at.last() != Some(&leaf) {
                     at.push(leaf);
                 }
             }
         }
         for leaf in leaves {
-            let corners = self.triangles[self.of_leaf(leaf)].as_flattened();
-            let mut beside: Vec<u32> = corners.iter().flat_map(|&i| leaves_at[i as usize].iter().copied()).collect();
+            let own = if self.is_patch(leaf) { &fans[self.of_leaf(leaf)] } else { &[] };
+            let of_fans = own.as_flattened().iter().flat_map(|&fan| leaves_at[fan as usize].iter().copied());
+            let mut beside: Vec<u32> = of_fans.collect();
             beside.sort_unstable();
             beside.dedup();
             self.beside.extend(beside);
@@ -130,7 +140,12 @@ impl TriangleBvh {
         }
     }
 
-    /// Whether two leaves share a corner.
+    /// Whether the triangles of a node are connected, and wound alike.
+    fn is_patch(&self, node: u32) -> bool {
+        self.is_patch[node as usize]
+    }
+
+    /// Whether two leaves are a patch together: they share a corner, of triangles that are connected around it.
     fn are_beside(&self, leaf: u32, other: u32) -> bool {
         self.part(&self.beside, &self.beside_end, leaf).binary_search(&other).is_ok()
     }
@@ -167,6 +182,15 @@ impl TriangleBvh {
     /// Whether a node is a leaf.
     pub fn is_leaf(&self, node: u32) -> bool {
         node as usize >= self.leaves
+    }
+
+    /// The triangles of a node.
+    fn of_node(&self, node: u32) -> Range<usize> {
+        let (mut first, mut last) = (node, node);
+        while !self.is_leaf(first) {
+            (first, last) = (2 * first, 2 * last + 1);
+        }
+        self.of_leaf(first).start..self.of_leaf(last).end
     }
 
     /// The triangles of a leaf.

@@ -201,7 +201,7 @@ mod tests {
                 inverse_mass: vec![1.0; count],
                 force: points.clone(),
                 position: points,
-                contact_load: Vec::new(),
+                contact_load: Default::default(),
             };
             let mut lanes = Lanes::default();
             lanes.load(&particles, order, SimdLevel::Best);

@@ -8,7 +8,7 @@ use bevy_tasks::TaskPool;
 use crate::{
     constraint::{
         attach::{grab, pin_motion},
-        implicit::ImplicitSheet,
+        implicit::{ImplicitSheet, contact::PredictedContact},
         strand::grid::StrandDirection,
     },
     contact::{self, body::Bodies, feature::ClothInStep, mesh::MeshContacts},
@@ -19,7 +19,7 @@ use crate::{
     integrate::{self, Motion, SpeedLimit},
     layout::simd::SimdLevel,
     parallel::grid_substep,
-    particles::{Particles, lanes::Lanes},
+    particles::{Particles, contact_load::FeatureLoad, lanes::Lanes},
     scratch::Scratch,
     step::{
         plan::Plan,
@@ -53,9 +53,6 @@ pub(super) struct Running<'a> {
     /// Whether threads that share the work have finished the substep.
     is_finished: bool,
     contacts: u32,
-    /// Whether triangles and edges may meet obstacles that particles don't. What carries the cloth there is no particle, and no
-    /// contact is predicted: particles that are held beside edges that aren't would tear at them.
-    meets_features: bool,
     /// Pairs of features that touched in the latest substep.
     pub touched: u32,
 }
@@ -101,7 +98,7 @@ impl<'a> Running<'a> {
         };
         scratch.air.sample(particles, ctx);
         if substep.implicit.is_some() {
-            scratch.implicit.contacts.begin(&particles.contact_load, particles.len());
+            scratch.implicit.contacts.begin(&particles.contact_load.particles, particles.len());
         }
         substep.prepare(scratch);
         scratch.body_attachments.rest(&mut scratch.lanes);
@@ -120,13 +117,12 @@ impl<'a> Running<'a> {
             has_moved,
             is_finished: false,
             contacts: 0,
-            meets_features: false,
             touched: 0,
         }
     }
 
-    /// Moves the cloth through the part `span` of the step, its substep `i`, as if it touched nothing.
-    pub fn advance(&mut self, i: u32, span: Range<f32>) {
+    /// Moves the cloth through the part `span` of the step, its substep `i`, as if nothing held it together.
+    pub fn predict(&mut self, i: u32, span: Range<f32>) {
         let Self { particles, scratch, substep, air_interval, .. } = self;
         let ctx = substep.ctx;
         if i.is_multiple_of(*air_interval) {
@@ -151,13 +147,19 @@ impl<'a> Running<'a> {
         let goes_on = i + 1 < self.substeps && ctx.grabs.is_empty() && !is_renewed;
         self.has_moved = goes_on && ctx.settings.method != Method::Explicit;
         self.is_finished = false;
+        scratch.implicit.contacts.predicted.clear();
+    }
+
+    /// Solves what holds the cloth together in the part `span` of the step.
+    pub fn solve(&mut self, span: Range<f32>) {
+        let Self { scratch, substep, .. } = self;
+        let ctx = substep.ctx;
         match (substep.implicit, ctx.settings.method) {
             (Some(sheet), _) => {
                 grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
                 let Scratch { lanes, broad_phase, faces, bodies, implicit, simd_level, .. } = &mut **scratch;
                 let predicted = &mut implicit.contacts.predicted;
-                predicted.clear();
-                if substep.is_near && !self.meets_features {
+                if substep.is_near {
                     contact::predict(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, predicted, *simd_level);
                 }
                 substep.solve_implicit(sheet, scratch);
@@ -204,8 +206,8 @@ impl<'a> Running<'a> {
         let contacts = contacts + touched;
         let Scratch { lanes, steady_force, implicit, simd_level, .. } = scratch;
         match substep.implicit {
-            Some(_) => implicit.contacts.end(&mut particles.contact_load),
-            None => particles.contact_load.clear(),
+            Some(_) => implicit.contacts.end(&mut particles.contact_load.particles),
+            None => particles.contact_load.particles.clear(),
         }
         match substep.helpers {
             Some((pool, _)) => grid_substep::store(pool, lanes, particles, *simd_level),
@@ -258,8 +260,24 @@ impl ClothInStep for Running<'_> {
         self.substep.is_near
     }
 
-    fn set_meets_features(&mut self, meets_features: bool) {
-        self.meets_features = meets_features;
+    fn is_implicit(&self) -> bool {
+        self.substep.implicit.is_some()
+    }
+
+    fn predicted(&self) -> &[PredictedContact] {
+        &self.scratch.implicit.contacts.predicted
+    }
+
+    fn predicted_mut(&mut self) -> &mut Vec<PredictedContact> {
+        &mut self.scratch.implicit.contacts.predicted
+    }
+
+    fn feature_loads(&self) -> &[FeatureLoad] {
+        &self.particles.contact_load.features
+    }
+
+    fn feature_loads_mut(&mut self) -> &mut Vec<FeatureLoad> {
+        &mut self.particles.contact_load.features
     }
 }
 

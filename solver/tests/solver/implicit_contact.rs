@@ -2,48 +2,76 @@
 
 use bevy_math::{
     Dir3, Isometry3d, Quat, Vec3, Vec3A, ops,
-    primitives::{Capsule3d, InfinitePlane3d, Sphere},
+    primitives::{Capsule3d, Cuboid, InfinitePlane3d, Sphere},
 };
-use drape_solver::{Elasticity, Material, Moduli, Obstacle, Solid, measure};
+use drape_solver::{Elasticity, Material, Moduli, Obstacle, SelfCollision, Solid, measure};
 
 use crate::{
     bench_bed::{Bed, GRAVITY, rms},
-    fixtures::mesh::{Grid, uneven},
+    fixtures::mesh::{Grid, both, shaped, turned_over, uneven},
 };
+
+/// How stiff woven cotton is.
+fn woven() -> Elasticity {
+    let moduli = Moduli::from_strips([4000.0; 2], 50.0, [0.0; 2], 1.0).expect("a sheet");
+    Elasticity::Moduli(Moduli { bending: 18e-6, ..moduli })
+}
 
 /// A piece of woven cotton of so many vertices along a side, which lies at height 0.
 fn cotton(length: f32, side: u32, damping: f32, friction: f32) -> Bed {
-    let moduli = Moduli::from_strips([4000.0; 2], 50.0, [0.0; 2], 1.0).expect("a sheet");
-    let sheet = Elasticity::Moduli(Moduli { bending: 18e-6, ..moduli });
     let mesh = uneven(Grid::new(length, length, side, side).lying(), 0.25);
-    let bed = Bed::new(mesh, Material { damping, friction, ..Material::bare(0.15, sheet) });
+    let bed = Bed::new(mesh, Material { damping, friction, ..Material::bare(0.15, woven()) });
     assert!(bed.topology.two_grid.is_some() && bed.topology.lattice.is_none());
     Bed { fluid_density: 0.0, ..bed }
 }
 
+/// A flat cushion of two uneven pieces, sewn together all around.
+fn cushion() -> Bed {
+    let half = |side: f32| {
+        let piece = uneven(Grid::new(0.4, 0.4, 24, 24).lying(), 0.25);
+        let bulge = |x: f32| 1.0 - (x / 0.2) * (x / 0.2);
+        shaped(piece, |p| Vec3::new(p.x, side * 0.01 * bulge(p.x) * bulge(p.z), p.z))
+    };
+    let mesh = both(half(1.0), turned_over(half(-1.0)));
+    let bed = Bed::new(mesh, Material { damping: 0.2, friction: 0.5, ..Material::bare(0.15, woven()) });
+    Bed { fluid_density: 0.0, self_collision: SelfCollision::Robust, margin: 2e-3, ..bed }
+}
+
+/// Energy of a bed, J.
+fn energy(bed: &Bed) -> f32 {
+    measure::energy(&bed.particles, &bed.topology, &bed.material, bed.gravity).total()
+}
+
+/// By how much that grows in all of some `seconds`, J.
+fn gained(bed: &mut Bed, seconds: u32) -> f32 {
+    let (mut least, mut gained) = (energy(bed), 0.0);
+    for _ in 0..60 * seconds {
+        bed.step(1.0 / 60.0);
+        let now = energy(bed);
+        gained += (now - least).max(0.0);
+        least = now;
+    }
+    gained
+}
+
 #[test]
-fn a_sheet_that_falls_on_something_round_loses_energy_all_the_time_and_comes_to_rest() {
+fn a_sheet_that_falls_on_something_loses_energy_all_the_time_and_comes_to_rest() {
     let ball = (Solid::Sphere(Sphere::new(0.4)), Vec3::NEG_Y * 0.45, Quat::IDENTITY);
     let bar = (Solid::Capsule(Capsule3d::new(0.1, 0.6)), Vec3::NEG_Y * 0.15, Quat::from_rotation_z(1.5));
-    for (name, (solid, place, turn)) in [("ball", ball), ("bar", bar)] {
+    let table = (Solid::Cuboid(Cuboid::new(0.5, 0.3, 0.5)), Vec3::NEG_Y * 0.2, Quat::IDENTITY);
+    for (name, (solid, place, turn)) in [("table", table), ("ball", ball), ("bar", bar)] {
         let mut bed = cotton(1.0, 48, 0.2, 0.5);
-        // As a game has it: so deep, triangles may cut into the ball between their corners.
+        // As a game has it: so deep, triangles may cut into what is round between their corners.
         bed.margin = 5e-3;
         bed.obstacles = vec![Obstacle::still(solid, Isometry3d::new(place, turn))];
-        let energy = |bed: &Bed| measure::energy(&bed.particles, &bed.topology, &bed.material, bed.gravity).total();
-        let (begun, mut least, mut gained) = (energy(&bed), f32::INFINITY, 0.0);
-        for _ in 0..360 {
-            bed.step(1.0 / 60.0);
-            let now = energy(&bed);
-            gained += (now - least).max(0.0);
-            least = now;
-        }
+        let begun = energy(&bed);
+        let gained = gained(&mut bed, 6);
         let before = bed.particles.clone();
         bed.step(1.0 / 60.0);
         let (seen, lost) = (rms(&bed.particles, &before) * 60.0, begun - energy(&bed));
         let strain = measure::strain(&bed.particles, &bed.topology).largest;
         println!("{name}: {seen} m/s rms, gained {gained} J of {lost} J, strain {strain}");
-        // Where contact came after the step only, 0.1 to 0.4 m/s, and as much gained as lost.
+        // Where contact came after the step only, 0.1 to 0.4 m/s, and as much gained as lost; on the table, strains of 30 to 40 %.
         assert!(seen < 5e-3, "{name}: {seen} m/s rms");
         assert!(gained < 0.01 * lost, "{name}: {gained} J of {lost} J");
         assert!(strain < 0.1, "{name}: {strain}");
@@ -98,4 +126,61 @@ fn a_sheet_that_a_board_lifts_goes_with_it() {
         assert!((place.y - 1.0).abs() < 2e-3, "at {place}");
         assert!((velocity.y - 1.0).abs() < 0.02, "{velocity}");
     }
+}
+
+#[test]
+fn a_sheet_that_is_lifted_by_a_side_comes_off_the_ground_and_rests() {
+    let mut bed = cotton(0.5, 20, 0.0, 0.5);
+    let ground = Solid::HalfSpace(InfinitePlane3d { normal: Dir3::Y });
+    bed.obstacles = vec![Obstacle::still(ground, Isometry3d::from_translation(Vec3::NEG_Y * 1e-3))];
+    bed.run(0.5);
+    let is_at_side = |&i: &u32| bed.particles.position[i as usize].x < -0.2499;
+    let side: Vec<u32> = (0..bed.particles.len() as u32).filter(is_at_side).collect();
+    bed = bed.pinned(side);
+    for _ in 0..60 {
+        for pin in &mut bed.pin_motions {
+            pin.start = pin.end;
+            pin.end += Vec3A::Y * (0.25 / 60.0);
+        }
+        bed.step(1.0 / 60.0);
+    }
+    bed.pin_motions.iter_mut().for_each(|pin| pin.start = pin.end);
+    bed.run(3.0);
+    let before = bed.particles.clone();
+    bed.step(1.0 / 60.0);
+    let (seen, strain) = (rms(&bed.particles, &before) * 60.0, measure::strain(&bed.particles, &bed.topology).largest);
+    let down = bed.particles.position.iter().filter(|place| place.y < 1e-3).count();
+    println!("{seen} m/s rms, strain {strain}, {down} of {} lie", before.len());
+    // Of a heavy chain that friction holds, 0.21 m lie.
+    assert!((160..200).contains(&down), "{down} of {} lie", before.len());
+    assert!(seen < 5e-3 && strain < 0.01, "{seen} m/s rms, strain {strain}");
+}
+
+#[test]
+fn a_cushion_whose_sides_touch_swings_without_gaining_energy() {
+    let mut bed = cushion();
+    let along = |i: &u32| bed.particles.position[*i as usize].dot(Vec3A::new(1.0, 0.0, 1.0));
+    let corner = (0..bed.particles.len() as u32).min_by(|i, j| along(i).total_cmp(&along(j)));
+    bed = bed.pinned(corner);
+    let gained = gained(&mut bed, 8);
+    let strain = measure::strain(&bed.particles, &bed.topology).mean;
+    println!("gained {gained} J, strain {strain}");
+    // It falls by 0.14 J. Where cloth met itself after the step only, 25 J were gained, and it ran wild at 6 m/s.
+    assert!(gained < 0.03, "{gained} J");
+    assert!(strain < 5e-3, "{strain}");
+}
+
+#[test]
+fn a_cushion_comes_to_rest_on_a_ball() {
+    let mut bed = cushion();
+    let ball = Solid::Sphere(Sphere::new(0.2));
+    bed.obstacles = vec![Obstacle::still(ball, Isometry3d::from_translation(Vec3::NEG_Y * 0.3))];
+    let gained = gained(&mut bed, 5);
+    let before = bed.particles.clone();
+    bed.step(1.0 / 60.0);
+    let (seen, strain) = (rms(&bed.particles, &before) * 60.0, measure::strain(&bed.particles, &bed.topology));
+    println!("{seen} m/s rms, gained {gained} J, strain {strain:?}");
+    assert!(seen < 2e-3, "{seen} m/s rms");
+    assert!(gained < 5e-3, "{gained} J");
+    assert!(strain.mean < 3e-3, "{strain:?}");
 }

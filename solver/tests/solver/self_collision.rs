@@ -1,13 +1,13 @@
 //! Sheets that are tangled when they begin come apart, and pairs that intersect are counted.
 
-use bevy_math::{DVec3, Vec3, Vec3A, ops};
-use drape_solver::{Material, Method, SelfCollision, measure};
+use bevy_math::{DVec3, Dir3, Isometry3d, Vec3, Vec3A, ops, primitives::InfinitePlane3d};
+use drape_solver::{Material, Method, Obstacle, SelfCollision, Solid, SourceMesh, measure};
 
 use crate::{
     bench_bed::{Bed, STABLE},
     fixtures::{
         material::{Springs, springs},
-        mesh::{Grid, both, shaped},
+        mesh::{Grid, both, shaped, uneven},
     },
 };
 
@@ -124,4 +124,22 @@ fn pairs_that_intersect_are_those_that_each_with_each_finds() {
     }
     let flat = Bed::lying(16, springs(Springs::default()));
     assert_eq!(tangles(&flat), 0);
+}
+
+#[test]
+fn layers_of_one_mesh_that_face_the_same_way_lie_on_each_other() {
+    let sheet = Grid::new(0.5, 0.5, 16, 16).lying();
+    let pieces = [SourceMesh::from(sheet), uneven(sheet, 0.25)];
+    for (method, piece) in STABLE.into_iter().flat_map(|method| pieces.clone().map(|piece| (method, piece))) {
+        let mesh = both(piece.clone(), shaped(piece, |p| p + Vec3::Y * 0.03));
+        let mut bed = Bed::new(mesh, springs(Springs::default())).like_a_game(method);
+        bed.self_collision = SelfCollision::Robust;
+        let ground = Solid::HalfSpace(InfinitePlane3d { normal: Dir3::Y });
+        bed.obstacles = vec![Obstacle::still(ground, Isometry3d::from_translation(Vec3::NEG_Y * 0.1))];
+        bed.run(1.0);
+        // Upon each other, they are as far apart as cloth keeps.
+        let (lower, upper) = bed.particles.position.split_at(bed.particles.len() / 2);
+        let least = lower.iter().zip(upper).map(|(lower, upper)| upper.y - lower.y).fold(f32::INFINITY, f32::min);
+        assert!(least > 1e-3 && tangles(&bed) == 0, "{method:?}: {least} m");
+    }
 }

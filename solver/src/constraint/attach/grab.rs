@@ -124,7 +124,7 @@ mod tests {
             velocity: vec![Vec3A::ZERO; 3],
             inverse_mass: vec![2.0; 3],
             force: vec![Vec3A::ZERO; 3],
-            contact_load: Vec::new(),
+            contact_load: Default::default(),
         };
         let mut lanes = Lanes::default();
         lanes.load(&particles, Order::plain(3), SimdLevel::Best);

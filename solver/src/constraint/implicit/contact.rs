@@ -16,7 +16,10 @@
 
 use bevy_math::Vec3A;
 
-use crate::constraint::implicit::vectors::{Masses, extended, point};
+use crate::{
+    constraint::implicit::vectors::{Masses, extended, point},
+    contact::friction,
+};
 
 /// Stiffness α along the normal, in masses of the particle: no unit.
 ///
@@ -37,17 +40,23 @@ const LARGEST_FALL: f32 = 0.05;
 /// How fast the normal force that friction knows follows the latest one: a share a substep.
 const FOLLOWING: f32 = 0.25;
 
-/// A particle that may come into an obstacle within a substep.
+/// What may come into something within a substep: a particle, or a feature by its corners.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PredictedContact {
-    /// Number of the particle.
-    pub particle: u32,
-    /// Outward normal of the surface, a unit vector.
+    /// Numbers of the particles, the first `count`. Those that aren't of the cloth have no weight.
+    pub particles: [u32; 4],
+    /// One, or four.
+    pub count: u8,
+    /// Weight of each in the way past what is touched, no unit.
+    pub weights: [f32; 4],
+    /// Outward normal of what is touched, a unit vector.
     pub normal: Vec3A,
-    /// Way of the surface within the substep, m.
+    /// Way of what is touched within the substep, m.
     pub way: Vec3A,
     /// Coulomb friction, no unit.
     pub friction: f32,
+    /// Normal force, N: in the substep before at first, and in this one once it is solved. Zero where nothing touches.
+    pub load: f32,
 }
 
 /// The contacts of a substep.
@@ -55,18 +64,20 @@ pub(crate) struct PredictedContact {
 pub(crate) struct ImplicitContacts {
     /// What may touch: found before the substep is solved.
     pub predicted: Vec<PredictedContact>,
-    /// What does: a particle's are next to each other.
+    /// What does.
     tangents: Vec<ContactTangent>,
     /// Normal force on each particle, N. Empty where nothing touched in the substep before.
     load: Vec<f32>,
     /// Residuals while they are scaled, kg m.
-    unscaled: Vec<[f32; 4]>,
+    unscaled: Vec<[[f32; 4]; 4]>,
 }
 
 /// What a contact adds to the linear system.
 #[derive(Clone, Copy, Debug)]
 struct ContactTangent {
     contact: PredictedContact,
+    /// Its number among those that are predicted.
+    number: u32,
     /// Stiffness along the normal and across it, kg.
     along: f32,
     across: f32,
@@ -100,14 +111,27 @@ impl ImplicitContacts {
         self.tangents.len()
     }
 
-    /// Whether nothing touches.
+    /// Whether nothing touches anything but the cloth itself.
     pub fn is_empty(&self) -> bool {
-        self.tangents.is_empty()
+        self.at_obstacles().next().is_none()
     }
 
-    /// The particles that touch, and what resists their ways.
-    pub fn resistances(&self) -> impl Iterator<Item = (u32, impl Fn(Vec3A) -> Vec3A)> {
-        self.tangents.iter().map(|tangent| (tangent.contact.particle, |way| tangent.resist(way)))
+    fn at_obstacles(&self) -> impl Iterator<Item = &ContactTangent> {
+        self.tangents.iter().filter(|tangent| tangent.contact.is_at_obstacle())
+    }
+
+    /// A particle of each contact with an obstacle, where that touches if particles are at `now` (m), and what resists ways there.
+    pub fn resistances(&self, now: &[[f32; 4]]) -> impl Iterator<Item = (u32, Vec3A, impl Fn(Vec3A) -> Vec3A)> {
+        self.at_obstacles().map(|tangent| {
+            let total: f32 = tangent.contact.weights.iter().sum();
+            let place = tangent.contact.weighted(now) / total;
+            (tangent.contact.particles[0], place, move |way| tangent.resist(way) * (total * total))
+        })
+    }
+
+    /// The particles of contacts with obstacles.
+    pub fn touching(&self) -> impl Iterator<Item = u32> {
+        self.at_obstacles().map(|tangent| tangent.contact.particles[0])
     }
 
     /// Linearises the contacts of particles that were at `before` and would be at `now` by themselves, m, without a `free_fall`
@@ -122,65 +146,67 @@ impl ImplicitContacts {
         free_fall: Vec3A,
         h: f32,
     ) {
-        if !self.predicted.is_empty() {
-            self.load.resize(areas.len(), 0.0);
-        }
-        // Which of several obstacles was found first is no matter.
-        self.predicted.sort_unstable_by_key(|contact| contact.particle);
         self.tangents.clear();
-        for contact in &self.predicted {
-            let i = contact.particle as usize;
-            let mass = masses.mass[i][0];
+        for (number, contact) in self.predicted.iter_mut().enumerate() {
+            if contact.is_of_particle() {
+                contact.load = self.load.get(contact.particles[0] as usize).copied().unwrap_or(0.0);
+            }
+            let inverse_mass = contact.inverse_mass(masses);
             let past = contact.past(now, before);
             let out = contact.normal.dot(past);
-            let is_tiny = free_fall.length_squared() > LARGEST_FALL * LARGEST_FALL * areas[i];
-            if mass == 0.0 || is_tiny || out + contact.normal.dot(free_fall).min(0.0) >= 0.0 {
+            let area = areas[contact.particles[0] as usize];
+            let is_tiny = free_fall.length_squared() > LARGEST_FALL * LARGEST_FALL * area;
+            let fall = contact.normal.dot(free_fall) * contact.weights.iter().sum::<f32>();
+            if inverse_mass == 0.0 || is_tiny || out + fall.min(0.0) >= 0.0 {
+                contact.load = 0.0;
                 continue;
             }
-            add(&mut now[i], contact.normal * -out);
+            contact.push(contact.normal * (-out / inverse_mass), masses, now);
             let slide = (past - contact.normal * out).length();
-            let friction = contact.friction * self.load[i] * h * h;
-            let across = friction / slide.max(CREEP * h);
-            self.tangents.push(ContactTangent { contact: *contact, along: STIFFNESS * mass, across });
+            let across = contact.friction * contact.load * h * h / slide.max(CREEP * h);
+            let along = STIFFNESS / inverse_mass;
+            self.tangents.push(ContactTangent { contact: *contact, number: number as u32, along, across });
         }
     }
 
     /// Adds the gradient, kg m.
     pub fn pull(&self, now: &[[f32; 4]], before: &[[f32; 4]], gradient: &mut [[f32; 4]]) {
         for tangent in &self.tangents {
-            let past = tangent.contact.past(now, before);
-            add(&mut gradient[tangent.contact.particle as usize], tangent.resist(past));
+            tangent.contact.spread(tangent.resist(tangent.contact.past(now, before)), gradient);
         }
     }
 
     /// Adds the matrix times a direction, kg m.
     pub fn multiply(&self, ways: &[[f32; 4]], product: &mut [[f32; 4]]) {
         for tangent in &self.tangents {
-            let i = tangent.contact.particle as usize;
-            add(&mut product[i], tangent.resist(point(&ways[i])));
+            tangent.contact.spread(tangent.resist(tangent.contact.weighted(ways)), product);
         }
     }
 
     /// Scales the residual for a preconditioner that knows of no contact, but has the `inverse_diagonal` (1/kg): that becomes the
-    /// inverse of the whole diagonal if what it makes of the residual is [scaled](Self::scale_ways) likewise.
+    /// inverse of the diagonal and the contact if what it makes of the residual is [scaled](Self::scale_ways) likewise.
+    ///
+    /// Of several contacts of a particle, one after the other.
     pub fn scale_residual(&mut self, inverse_diagonal: &[f32], residual: &mut [[f32; 4]]) {
         self.unscaled.clear();
         for tangent in &self.tangents {
-            let i = tangent.contact.particle as usize;
-            self.unscaled.push(residual[i]);
-            let scaled = tangent.scale(inverse_diagonal[i], point(&residual[i]));
-            residual[i] = extended(scaled);
+            let contact = &tangent.contact;
+            self.unscaled.push(contact.particles.map(|i| residual[i as usize]));
+            let way = contact.weighted_by(|i| inverse_diagonal[i], residual);
+            contact.spread(tangent.taken(contact.compliance(|i| inverse_diagonal[i]), way), residual);
         }
     }
 
     /// Scales what the preconditioner has made of the residual, and puts that back.
     pub fn scale_ways(&self, inverse_diagonal: &[f32], residual: &mut [[f32; 4]], ways: &mut [[f32; 4]]) {
-        // Backwards: so the whole is symmetric where several obstacles touch a particle.
+        // Backwards: so the whole is symmetric.
         for (tangent, unscaled) in self.tangents.iter().zip(&self.unscaled).rev() {
-            let i = tangent.contact.particle as usize;
-            residual[i] = *unscaled;
-            let scaled = tangent.scale(inverse_diagonal[i], point(&ways[i]));
-            ways[i] = extended(scaled);
+            let contact = &tangent.contact;
+            for (&i, unscaled) in contact.particles.iter().zip(unscaled) {
+                residual[i as usize] = *unscaled;
+            }
+            let taken = tangent.taken(contact.compliance(|i| inverse_diagonal[i]), contact.weighted(ways));
+            contact.spread_by(taken, |i| inverse_diagonal[i], ways);
         }
     }
 
@@ -190,40 +216,101 @@ impl ImplicitContacts {
         &mut self,
         before: &[[f32; 4]],
         [correction, residual]: [&[[f32; 4]]; 2],
+        masses: &Masses,
         h: f32,
         now: &mut [[f32; 4]],
     ) {
-        let Self { tangents, load, .. } = self;
-        if tangents.is_empty() {
-            return load.clear();
-        }
-        let mut rest = &tangents[..];
-        for (i, load) in load.iter_mut().enumerate() {
-            let count = rest.iter().take_while(|tangent| tangent.contact.particle as usize == i).count();
-            let (own, others) = rest.split_at(count);
-            rest = others;
-            // Of several obstacles, friction knows the strongest.
-            let mut latest = f32::NEG_INFINITY;
-            for ContactTangent { contact, along, across } in own {
-                let [moved, left] = [correction, residual].map(|list| contact.normal.dot(point(&list[i])));
-                latest = latest.max(-(along * moved + left) / (h * h));
-                let past = contact.past(now, before);
-                let slide = past - contact.normal * contact.normal.dot(past);
-                if *across > 0.0 && slide.length() < STUCK * CREEP * h {
-                    add(&mut now[i], -slide);
-                }
+        let Self { predicted, tangents, load, .. } = self;
+        load.clear();
+        for ContactTangent { contact, number, along, across } in &*tangents {
+            let inverse_mass = contact.inverse_mass(masses);
+            let moved = contact.normal.dot(contact.weighted(correction));
+            let left = contact.normal.dot(contact.weighted_by(|i| masses.inverse(i), residual)) / inverse_mass;
+            let latest = -(*along * moved + left) / (h * h);
+            let followed = if contact.load > 0.0 { contact.load + (latest - contact.load) * FOLLOWING } else { latest };
+            predicted[*number as usize].load = followed.max(0.0);
+            let past = contact.past(now, before);
+            let slide = past - contact.normal * contact.normal.dot(past);
+            if *across > 0.0 && slide.length() < STUCK * CREEP * h {
+                contact.push(slide / -inverse_mass, masses, now);
             }
-            let followed = if *load > 0.0 { *load + (latest - *load) * FOLLOWING } else { latest };
-            *load = followed.max(0.0);
+        }
+        if tangents.is_empty() {
+            return;
+        }
+        load.resize(before.len(), 0.0);
+        for contact in predicted.iter().filter(|contact| contact.is_of_particle()) {
+            // Of several obstacles, friction knows the strongest.
+            let load = &mut load[contact.particles[0] as usize];
+            *load = load.max(contact.load);
         }
     }
 }
 
 impl PredictedContact {
-    /// The way of its particle past the surface from `before` to `now`, m.
+    /// That of one particle.
+    pub fn of_particle(particle: u32, normal: Vec3A, way: Vec3A, friction: f32) -> Self {
+        Self { particles: [particle; 4], count: 1, weights: [1.0, 0.0, 0.0, 0.0], normal, way, friction, load: 0.0 }
+    }
+
+    fn is_of_particle(&self) -> bool {
+        self.count == 1
+    }
+
+    /// Whether it isn't between parts of the same cloth: the weights of such add up to nothing.
+    fn is_at_obstacle(&self) -> bool {
+        self.weights.iter().sum::<f32>().abs() > 0.5
+    }
+
+    /// The particles and their weights.
+    fn parts(&self) -> impl Iterator<Item = (usize, f32)> {
+        let parts = self.particles.into_iter().zip(self.weights).take(self.count.into());
+        parts.map(|(i, weight)| (i as usize, weight))
+    }
+
+    /// The sum of vectors of the particles by their weights.
+    fn weighted(&self, list: &[[f32; 4]]) -> Vec3A {
+        self.weighted_by(|_| 1.0, list)
+    }
+
+    /// The same, of vectors times a number of each particle.
+    fn weighted_by(&self, number: impl Fn(usize) -> f32, list: &[[f32; 4]]) -> Vec3A {
+        self.parts().map(|(i, weight)| point(&list[i]) * (weight * number(i))).sum()
+    }
+
+    /// Adds a vector to those of the particles, times their weights.
+    fn spread(&self, vector: Vec3A, list: &mut [[f32; 4]]) {
+        self.spread_by(vector, |_| 1.0, list);
+    }
+
+    /// The same, times a number of each particle too.
+    fn spread_by(&self, vector: Vec3A, number: impl Fn(usize) -> f32, list: &mut [[f32; 4]]) {
+        for (i, weight) in self.parts() {
+            list[i] = extended(point(&list[i]) + vector * (weight * number(i)));
+        }
+    }
+
+    /// How much one unit of force moves what touches, by a number of each particle.
+    fn compliance(&self, number: impl Fn(usize) -> f32) -> f32 {
+        self.parts().map(|(i, weight)| weight * weight * number(i)).sum()
+    }
+
+    /// Effective inverse mass, 1/kg.
+    fn inverse_mass(&self, masses: &Masses) -> f32 {
+        match self.count {
+            1 => masses.inverse(self.particles[0] as usize),
+            _ => friction::effective_inverse_mass(self.weights, self.particles.map(|i| masses.inverse(i as usize))),
+        }
+    }
+
+    /// Moves the particles by an impulse times h, kg m.
+    fn push(&self, impulse: Vec3A, masses: &Masses, now: &mut [[f32; 4]]) {
+        self.spread_by(impulse, |i| masses.inverse(i), now);
+    }
+
+    /// The way past what is touched from `before` to `now`, m.
     fn past(&self, now: &[[f32; 4]], before: &[[f32; 4]]) -> Vec3A {
-        let i = self.particle as usize;
-        point(&now[i]) - point(&before[i]) - self.way
+        self.weighted(now) - self.weighted(before) - self.way
     }
 }
 
@@ -233,10 +320,10 @@ impl ContactTangent {
         self.by_direction(way, [self.along, self.across])
     }
 
-    /// A vector scaled by the root of what the contact leaves of an inverse of the diagonal.
-    fn scale(&self, inverse_diagonal: f32, vector: Vec3A) -> Vec3A {
-        let part = |stiffness: f32| (1.0 + stiffness * inverse_diagonal).sqrt().recip();
-        self.by_direction(vector, [self.along, self.across].map(part))
+    /// What the root of what the contact leaves of an inverse of the diagonal takes from a way, where one unit of force moves the contact by `compliance` (1/kg).
+    fn taken(&self, compliance: f32, way: Vec3A) -> Vec3A {
+        let part = |stiffness: f32| ((1.0 + stiffness * compliance).sqrt().recip() - 1.0) / compliance;
+        self.by_direction(way, [self.along, self.across].map(part))
     }
 
     /// A vector times one number along the normal and another across it.
@@ -244,8 +331,4 @@ impl ContactTangent {
         let normal = self.contact.normal;
         vector * across + normal * (normal.dot(vector) * (along - across))
     }
-}
-
-fn add(sum: &mut [f32; 4], more: Vec3A) {
-    *sum = extended(point(sum) + more);
 }

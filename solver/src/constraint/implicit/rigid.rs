@@ -108,14 +108,14 @@ impl RigidMotions {
     }
 
     /// Adds the stiffness of the `packs` of faces that hold the components, with their tangents and a `coupling` of G h², kg, and
-    /// of `contacts` that hold particles.
+    /// of `contacts`: a particle of each, and what resists ways at its place.
     pub fn hold<'a>(
         &mut self,
         two_grid: &TwoGrid,
         now: &[[f32; 4]],
         packs: impl Iterator<Item = (&'a FacePack, &'a FaceTangent)>,
         coupling: f32,
-        contacts: impl Iterator<Item = (u32, impl Fn(Vec3A) -> Vec3A)>,
+        contacts: impl Iterator<Item = (u32, Vec3A, impl Fn(Vec3A) -> Vec3A)>,
     ) {
         let Self { components, arms } = self;
         for (pack, tangent) in packs {
@@ -136,9 +136,9 @@ impl RigidMotions {
                 add_stiffness(&mut component.matrix, middle - component.middle, stress);
             }
         }
-        for (particle, stress) in contacts {
+        for (particle, place, stress) in contacts {
             let component = &mut components[two_grid.component[particle as usize] as usize];
-            add_stiffness(&mut component.matrix, point(&now[particle as usize]) - component.middle, stress);
+            add_stiffness(&mut component.matrix, place - component.middle, stress);
         }
         self.invert(true);
     }

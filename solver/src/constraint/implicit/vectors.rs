@@ -40,6 +40,12 @@ impl Masses {
         let count = (self.mass.len() + 1).next_multiple_of(2);
         self.mass.resize(count, [0.0; 4]);
     }
+
+    /// Inverse mass of a particle, 1/kg: zero for one that is fixed.
+    pub fn inverse(&self, particle: usize) -> f32 {
+        let [mass, ..] = self.mass[particle];
+        if mass > 0.0 { mass.recip() } else { 0.0 }
+    }
 }
 
 /// Two points to a register.

@@ -211,7 +211,7 @@ mod tests {
             velocity: vec![Vec3A::ZERO; 2],
             inverse_mass: vec![0.0, 2.0],
             force: vec![Vec3A::ZERO; 2],
-            contact_load: Vec::new(),
+            contact_load: Default::default(),
         };
         lanes.load(&particles, Order::plain(2), SimdLevel::Best);
         lanes.previous = lanes.position.clone();

@@ -193,6 +193,8 @@ pub fn back_through((a, s): (&ContactSide, usize), (b, tip): (&ContactSide, u32)
         friction: reach.friction,
         gap: -length,
         normal,
+        load: 0.0,
+        is_solved_by_cloth: false,
     };
     Candidate { pair, is_first_of_a: false, face: s, nearest }
 }
@@ -278,7 +280,17 @@ fn found_between(
     let (direction, length) = nearest.between.normalize_and_length();
     let normal = if length > 0.0 { direction } else { Vec3A::Y };
     let points = [s0.first + p0, s1.first + p1, s2.first + p2, s3.first + p3];
-    let pair = FeatureContact { features, points, distance, taper, friction: reach.friction, gap: length, normal };
+    let pair = FeatureContact {
+        features,
+        points,
+        distance,
+        taper,
+        friction: reach.friction,
+        gap: length,
+        normal,
+        load: 0.0,
+        is_solved_by_cloth: false,
+    };
     found(Candidate { pair, is_first_of_a: true, face: 0, nearest });
 }
 

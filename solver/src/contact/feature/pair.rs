@@ -58,6 +58,23 @@ pub struct FeatureContact {
     pub gap: f32,
     /// Unit vector from the second feature to the first, on the side where it belongs.
     pub normal: Vec3A,
+    /// Normal force in the latest substep, N, where the cloth's implicit step has found one.
+    pub load: f32,
+    /// Whether the contact is solved along with the cloth, friction and all: what is left is to keep the features apart.
+    pub is_solved_by_cloth: bool,
+}
+
+/// How a pair's features are to each other.
+#[derive(Clone, Copy, Debug)]
+pub struct Separation {
+    /// Weight of each point in the way from the second feature's closest point to the first's.
+    pub weights: [f32; 4],
+    /// Unit vector from the second feature to the first, on the side where it belongs.
+    pub normal: Vec3A,
+    /// Distance along that, m.
+    pub gap: f32,
+    /// Distance to keep there, m.
+    pub distance: f32,
 }
 
 /// How two features are to each other.
@@ -191,14 +208,51 @@ impl FeatureContact {
         most_parted: f32,
         body: Option<&BodyContact>,
     ) -> Option<Impulse> {
-        let all = self.points.map(|i| i as usize);
-        let places = all.map(|i| points.position[i]);
         let farthest = self.distance + self.taper.max(0.0);
-        if self.features.is_beyond(places, self.normal, farthest) {
+        if self.is_beyond(points, farthest) {
             self.gap = farthest;
             return None;
         }
-        let before = all.map(|i| points.previous[i]);
+        let Separation { weights, normal, gap, distance } = self.look(points);
+        let target = distance.min(self.gap + most_parted);
+        let old_gap = core::mem::replace(&mut self.gap, gap);
+        self.normal = normal;
+        if gap >= target {
+            return None;
+        }
+        // What was too near before parts without gaining speed.
+        let penetration = if self.is_solved_by_cloth {
+            // The gap before is that before the cloth was solved: of that, only speed is left to be undone.
+            let moved = self.points.map(|i| points.position[i as usize] - points.previous[i as usize]);
+            (-normal.dot(weighted(weights, moved))).clamp(0.0, target - gap)
+        } else {
+            (old_gap.min(target) - gap).max(0.0)
+        };
+        let parting = FeatureCorrection {
+            points: self.points.map(|i| i as usize),
+            weights,
+            normal,
+            penetration,
+            depenetration: target - gap - penetration,
+            friction: if self.is_solved_by_cloth { 0.0 } else { self.friction },
+        };
+        let given = parting.apply(points, body)?;
+        self.gap = target;
+        Some(given)
+    }
+
+    /// Whether all of the first feature is farther than `distance` (m) from all of the second, along the latest normal.
+    #[inline]
+    pub fn is_beyond(&self, points: &FeaturePoints, distance: f32) -> bool {
+        let places = self.points.map(|i| points.position[i as usize]);
+        self.features.is_beyond(places, self.normal, distance)
+    }
+
+    /// How far apart the features are: on the side where they belong, unless they have passed through each other.
+    #[inline]
+    pub fn look(&self, points: &FeaturePoints) -> Separation {
+        let places = self.points.map(|i| points.position[i as usize]);
+        let before = self.points.map(|i| points.previous[i as usize]);
         let ClosestPoints { weights, between } = self.features.nearest(places);
         let (direction, length) = between.normalize_and_length();
         let (mut normal, mut gap) = if length > 0.0 { (direction, length) } else { (self.normal, 0.0) };
@@ -210,25 +264,7 @@ impl FeatureContact {
             Features::PointFace | Features::PointPoint => self.distance,
             Features::EdgeEdge => self.distance - self.taper * weights[3],
         };
-        let target = distance.min(self.gap + most_parted);
-        let old_gap = core::mem::replace(&mut self.gap, gap);
-        self.normal = normal;
-        if gap >= target {
-            return None;
-        }
-        // What was too near before parts without gaining speed.
-        let penetration = (old_gap.min(target) - gap).max(0.0);
-        let parting = FeatureCorrection {
-            points: all,
-            weights,
-            normal,
-            penetration,
-            depenetration: target - gap - penetration,
-            friction: self.friction,
-        };
-        let given = parting.apply(points, body)?;
-        self.gap = target;
-        Some(given)
+        Separation { weights, normal, gap, distance }
     }
 
     /// Whether the features met on their way from `before` to `after`.

@@ -7,6 +7,10 @@ use crate::{
     geometry::{closest_point, intersection::pierces},
 };
 
+/// Acceleration at which edge and face go apart at most, m/s²: fifty times that of gravity. Where they can't part, more would put
+/// energy into the cloth for ever.
+const PULL: f32 = 500.0;
+
 /// An edge that pierces a face of cloth, and the way out.
 ///
 /// The two are moved against each other along the direction in which the line where the surfaces cross gets shorter (Volino
@@ -62,17 +66,20 @@ pub fn find(numbers: [[u32; 3]; 2], places: &[Vec3A], tangles: &mut Vec<Tangle>)
 }
 
 impl Tangle {
-    /// Moves edge and face against each other by `far` (m).
-    pub fn solve(&self, points: &mut FeaturePoints, far: f32) {
+    /// Moves edge and face against each other within a substep of `h` seconds: by `far` (m) from where they were before it at most.
+    pub fn solve(&self, points: &mut FeaturePoints, far: f32, h: f32) {
         let all = self.points.map(|i| i as usize);
         let masses = all.map(|i| points.inverse_mass[i]);
         let inverse_mass = effective_inverse_mass(self.weights, masses);
         if inverse_mass <= 0.0 {
             return;
         }
+        let of_edge = |k: usize| if k < 2 { 1.0 } else { -1.0 };
+        let moved = |k: usize| (points.position[all[k]] - points.previous[all[k]]) * (of_edge(k) * self.weights[k]);
+        let apart = self.way.dot((0..5).map(moved).sum());
+        let push = (far - apart).clamp(0.0, PULL * h * h) / inverse_mass;
         for (k, (&i, w)) in all.iter().zip(masses).enumerate() {
-            let towards = if k < 2 { far } else { -far };
-            points.position[i] += self.way * (towards * self.weights[k] * w / inverse_mass);
+            points.position[i] += self.way * (of_edge(k) * push * self.weights[k] * w);
         }
     }
 }
@@ -148,7 +155,7 @@ mod tests {
                 prop_assert!((tangle.way.length() - 1.0).abs() < 1e-4);
                 let mut points = FeaturePoints { position: places.clone(), previous: places.clone(), ..FeaturePoints::default() };
                 points.inverse_mass = masses.to_vec();
-                tangle.solve(&mut points, 0.01);
+                tangle.solve(&mut points, 0.01, 1.0);
                 let moved = |i: u32| points.position[i as usize] - places[i as usize];
                 // Edge and face go apart by as much at the place, and as a whole nothing moves.
                 let sum: Vec3A = numbers.iter().map(|&i| moved(i) / masses[i as usize]).sum();

@@ -44,7 +44,7 @@ impl Traversal {
         self.folded.clear();
         self.folded.push(1);
         while let Some(node) = self.folded.pop() {
-            if places.facing[node as usize] != 0 {
+            if places.facing[node as usize] != 0 && surface.is_patch(node) {
                 continue;
             }
             if surface.is_leaf(node) {
@@ -54,7 +54,7 @@ impl Traversal {
             let (first, other) = (2 * node, 2 * node + 1);
             self.left.clear();
             self.left.push((first, other));
-            // Two that share a corner and face one way are a patch too.
+            // Two leaves beside each other that face one way are a patch too.
             let mut visit_folded = |p: u32, q: u32| {
                 if places.facing[p as usize] & places.facing[q as usize] == 0 || !surface.are_beside(p, q) {
                     visit(p, q);

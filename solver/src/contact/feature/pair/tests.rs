@@ -58,7 +58,17 @@ fn numbers(features: Features) -> [u32; 4] {
 /// A pair whose features were `gap` (m) apart along `normal`.
 fn pair(features: Features, distance: f32, gap: f32, normal: Vec3A) -> FeatureContact {
     let points = numbers(features);
-    FeatureContact { features, points, distance, taper: 0.0, friction: 0.0, gap, normal }
+    FeatureContact {
+        features,
+        points,
+        distance,
+        taper: 0.0,
+        friction: 0.0,
+        gap,
+        normal,
+        load: 0.0,
+        is_solved_by_cloth: false,
+    }
 }
 
 /// What a parting is to move each point by, m, from the definition in double precision.
