@@ -30,14 +30,14 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
     studio.spawn_rod(&mut commands, left, right, 0.015);
     commands.spawn((
         studio.cloth(ClothGrid::new(1.2, 1.2, 40, 40), Color::srgb(0.70, 0.22, 0.18)),
-        Cloth { substeps: Some(12), ..default() },
+        Cloth::default(),
         Fabric::COTTON_WOVEN,
         Pins::edge_corners(ClothEdge::Top),
         Transform::from_xyz(-0.4, 1.15, 0.0),
     ));
     commands.spawn((
         studio.cloth(ClothGrid::new(0.25, 1.1, 12, 52), Color::srgb(0.24, 0.50, 0.46)),
-        Cloth { substeps: Some(16), ..default() },
+        Cloth::default(),
         Fabric::SILK,
         Transform::from_xyz(1.2, 1.1, 0.0),
         Waved::default(),

@@ -24,7 +24,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
         let pole = studio.spawn_rod(&mut commands, foot, foot + Vec3::Y * 2.4, 0.025);
         commands.spawn((
             studio.cloth(ClothGrid::new(1.4, 0.9, 50, 33), color),
-            Cloth { substeps: Some(12), ..default() },
+            Cloth::default(),
             Fabric { lift: 0.8, ..Fabric::POLYESTER_TABLECLOTH },
             // Pinned to the pole, the flag follows wherever that goes.
             Pins::edge(ClothEdge::Left).to_entity(pole),

@@ -42,7 +42,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
     commands.spawn((
         Name::new("Cloth on the ball"),
         studio.cloth(ClothGrid::new(1.0, 1.0, 47, 47).lying(), Color::srgb(0.16, 0.38, 0.62)),
-        Cloth { substeps: Some(12), collision_margin: 0.008, ..default() },
+        Cloth { collision_margin: 0.008, ..default() },
         Fabric::SILK,
         Transform::from_xyz(0.5, 0.8, 0.6),
     ));

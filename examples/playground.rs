@@ -90,7 +90,7 @@ fn spawn_curtain(commands: &mut Commands, studio: &mut common::Studio) {
     let right = Pins::indices([grid.vertex(45, 0)]).to_entity(ring(1.0));
     commands.spawn((
         studio.cloth(grid, Color::srgb(0.72, 0.16, 0.14)),
-        Cloth { substeps: Some(24), ..default() },
+        Cloth::default(),
         Fabric::COTTON_WOVEN,
         left.and(right),
         Transform::from_translation(middle - Vec3::Y * 0.93),
@@ -123,7 +123,7 @@ fn spawn_draped<S>(
     ));
     commands.spawn((
         studio.cloth(ClothGrid::new(1.25, 1.25, 48, 48).lying(), color),
-        Cloth { substeps: Some(12), collision_margin: 0.008, ..default() },
+        Cloth { collision_margin: 0.008, ..default() },
         Fabric::COTTON_WOVEN,
         Transform::from_translation(place + Vec3::Y * 0.75).with_rotation(Quat::from_rotation_y(0.5)),
         Name::new(name),
@@ -151,7 +151,7 @@ fn make_cloth_of_model(
 ) {
     for entity in children.iter_descendants(ready.entity).filter(|&entity| meshes.contains(entity)) {
         commands.entity(entity).insert((
-            Cloth { substeps: Some(12), ..default() },
+            Cloth::default(),
             // Stiff enough for the model's cells of 5 cm to show its folds.
             Fabric { bending_rigidity: 60e-6, ..Fabric::POLYESTER_TABLECLOTH },
             Pins::attribute(ATTRIBUTE_PIN),

@@ -140,7 +140,7 @@ fn lay_table(mut commands: Commands, mut studio: common::Studio) {
 fn spawn_cloth(mut commands: Commands, mut studio: common::Studio) {
     commands.spawn((
         studio.cloth(ClothGrid::new(1.8, 1.8, 100, 100).lying(), Color::srgb(0.17, 0.38, 0.42)),
-        Cloth { substeps: Some(20), collision_margin: 0.004, ..default() },
+        Cloth { collision_margin: 0.004, ..default() },
         Fabric::POLYESTER_TABLECLOTH,
         // Not over all of it: a place in front is to be seen.
         Transform::from_xyz(-0.25, 1.15, -0.4).with_rotation(Quat::from_rotation_y(0.2)),

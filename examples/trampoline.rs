@@ -39,7 +39,7 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
     commands.spawn((
         studio.cloth(sheet, Color::srgb(0.16, 0.32, 0.52)),
         // A sheet that is meant to stretch has no tethers.
-        Cloth { tether_slack: None, substeps: Some(16), ..default() },
+        Cloth { tether_slack: None, ..default() },
         Fabric {
             warp_stiffness: 900.0,
             weft_stiffness: 900.0,

@@ -15,13 +15,16 @@ use super::{
 
 #[derive(Subcommand)]
 pub enum Contact {
-    /// The same cloth falls on a sphere over a ground
+    /// The same cloth falls on a sphere, or a table, over a ground
     Drape {
         #[command(flatten)]
         options: Options,
         /// grid, delaunay, hex, skirt, ell, sleeve, or a FILE.glb, which is scaled to 1 m
         #[arg(long, default_value = "grid")]
         mesh: MeshSource,
+        /// A ball of 0.3 m radius, or a table of 0.5 m x 0.5 m
+        #[arg(long, value_enum, default_value = "ball")]
+        on: Below,
         /// More spheres around, which are too far away for the cloth to reach
         #[arg(long, default_value_t = 0)]
         others: u32,
@@ -79,6 +82,12 @@ pub enum Contact {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
+pub enum Below {
+    Ball,
+    Table,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
 pub enum Sharp {
     Needle,
     Corner,
@@ -97,11 +106,14 @@ impl Contact {
     pub fn measure(&self) -> io::Result<Value> {
         let grid = &MeshSource::Grid;
         let (name, options, mesh, scene) = match self {
-            Self::Drape { options, mesh, others } => {
+            Self::Drape { options, mesh, on, others } => {
                 let settings = options.settings(SelfCollision::Off)?;
                 let (cloth, _) = hang::free(options, &settings, mesh)?;
-                let scene = drape::on_ball(&settings, [drape::raised(cloth)]);
-                ("drape", options, mesh, drape::among(scene, *others))
+                let (name, scene) = match on {
+                    Below::Ball => ("drape", drape::on_ball(&settings, [drape::raised(cloth)])),
+                    Below::Table => ("drape: table", drape::on_table(&settings, drape::raised(cloth))),
+                };
+                (name, options, mesh, drape::among(scene, *others))
             }
             Self::Mesh { options, open } => {
                 let settings = options.settings(SelfCollision::Off)?;

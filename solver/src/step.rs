@@ -3,6 +3,10 @@
 use bevy_math::Vec3A;
 
 use crate::{
+    constraint::implicit::{
+        between::ContactsBetween,
+        system::{self, SheetSystem},
+    },
     contact::feature::FeatureContacts,
     input::{MAX_TIME_STEP, StepContext},
     particles::Particles,
@@ -103,6 +107,8 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut FeatureContacts) {
         for cloth in &mut *cloths {
             cloth.solve(span.clone());
         }
+        solve_sheets(cloths, touch.between_mut());
+        cloths.iter_mut().for_each(Running::settle);
         if let Some(Substep { h, ctx, .. }) = first {
             let touched = touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
             // Whose they are isn't known: they count once.
@@ -113,4 +119,20 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut FeatureContacts) {
         }
     }
     touch.keep_loads(cloths);
+}
+
+/// The implicit steps: sheets that touch each other are solved as one system, and each other by itself.
+fn solve_sheets(cloths: &mut [Running], between: &mut ContactsBetween) {
+    let is_together = |number: u32| between.predicted.iter().any(|contact| contact.sheets.contains(&number));
+    for (number, cloth) in (0..).zip(&mut *cloths) {
+        if !is_together(number) {
+            let alone = cloth.system(number);
+            alone.into_iter().for_each(|alone| system::solve(&mut [alone], &mut ContactsBetween::default()));
+        }
+    }
+    if !between.predicted.is_empty() {
+        let systems = (0..).zip(cloths).filter(|(number, _)| is_together(*number));
+        let mut systems: Vec<SheetSystem> = systems.filter_map(|(number, cloth)| cloth.system(number)).collect();
+        system::solve(&mut systems, between);
+    }
 }

@@ -1,4 +1,4 @@
-//! A cloth falls on a ball over a ground.
+//! A cloth falls on a ball, or a table, over a ground.
 
 use std::{io, sync::Arc};
 
@@ -20,6 +20,9 @@ pub const GROUND: Solid = Solid::HalfSpace(InfinitePlane3d { normal: Dir3::Y });
 const RADIUS: f32 = 0.3;
 pub const CENTRE: Vec3 = Vec3::new(0.0, 0.15, 0.0);
 
+/// How high the top of what is below the cloth is, m.
+const TOP: f32 = CENTRE.y + RADIUS;
+
 /// How high the lowest of the cloth is at first, m.
 const HEIGHT: f32 = 0.75;
 
@@ -36,6 +39,12 @@ pub fn raised(cloth: Cloth) -> Cloth {
 /// On a ball of 0.3 m radius at (0, 0.15, 0).
 pub fn on_ball(settings: &Settings, cloths: impl IntoIterator<Item = Cloth>) -> Scene {
     Scene::new(settings, cloths).with(Solid::Sphere(Sphere::new(RADIUS)), CENTRE).with(GROUND, Vec3::ZERO)
+}
+
+/// On a table of 0.5 m x 0.5 m whose top is as high as that of the ball.
+pub fn on_table(settings: &Settings, cloth: Cloth) -> Scene {
+    let table = Cuboid::new(0.5, TOP, 0.5);
+    Scene::new(settings, [cloth]).with(Solid::Cuboid(table), Vec3::Y * (0.5 * TOP)).with(GROUND, Vec3::ZERO)
 }
 
 /// With so many more such balls around it, which are too far away for the cloth to reach.

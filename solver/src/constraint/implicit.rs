@@ -34,8 +34,12 @@ use fearless_simd::{Level, Simd, dispatch};
 use crate::{
     constraint::{
         implicit::{
-            contact::ImplicitContacts, direction::Direction, edge::EdgeTangent, face::FaceTangent,
-            preconditioner::Preconditioner, vectors::Masses,
+            contact::{ContactTangent, ImplicitContacts, PredictedContact},
+            direction::Direction,
+            edge::EdgeTangent,
+            face::FaceTangent,
+            preconditioner::Preconditioner,
+            vectors::Masses,
         },
         strand::law::DirectionModuli,
         unstructured::bend::{
@@ -44,7 +48,7 @@ use crate::{
         },
     },
     input::{AttachedPin, Method, StepContext},
-    layout::{points::Points, simd::SimdLevel},
+    layout::points::Points,
     linear::sparse_rows::SparseRows,
     material::Moduli,
     particles::{gathered::GatheredParticles, lanes::Lanes},
@@ -54,12 +58,14 @@ use crate::{
     },
 };
 
+pub(crate) mod between;
 pub(crate) mod contact;
 mod direction;
 mod edge;
 mod face;
 mod preconditioner;
 mod rigid;
+pub(crate) mod system;
 mod vectors;
 
 /// Iterations of conjugate gradients in a substep.
@@ -195,35 +201,24 @@ impl<'a> ImplicitSheet<'a> {
         held_bends.extend(numbered(bend_packs, |pack| is_held(pack.particles.as_flattened())));
     }
 
-    /// Moves particles from where they would be by themselves, without gravity, to where it, the cloth and the `force` on each
-    /// of them (N) take them.
-    pub fn solve(
-        &self,
-        lanes: &mut Lanes,
-        force: Option<&Points>,
-        gathered: &mut GatheredParticles,
-        buffers: &mut ImplicitBuffers,
-        simd_level: SimdLevel,
-    ) {
-        gathered.read(lanes, true, simd_level);
-        let count = gathered.now.len().next_multiple_of(2);
-        gathered.now.resize(count, [0.0; 4]);
-        gathered.before.resize(count, [0.0; 4]);
-        self.solve_gathered(simd_level.level(), force, gathered, buffers);
-        gathered.write(lanes, simd_level);
+    /// Linearises the contacts with obstacles and within the sheet, and ends the ways into them.
+    fn linearise_contacts(&self, gathered: &mut GatheredParticles, buffers: &mut ImplicitBuffers) {
+        let GatheredParticles { now, before } = gathered;
+        let ImplicitBuffers { masses, free_fall, contacts, .. } = buffers;
+        contacts.linearise(now, before, masses, &self.topology.areas, *free_fall, self.h);
     }
 
-    fn solve_gathered(
+    /// Linearises the sheet where its particles would be by themselves. Some of them are `touching` other sheets.
+    fn linearise(
         &self,
         level: Level,
-        force: Option<&Points>,
+        touching: impl Iterator<Item = u32>,
         gathered: &mut GatheredParticles,
         buffers: &mut ImplicitBuffers,
     ) {
         let GatheredParticles { now, before } = gathered;
-        let ImplicitBuffers { masses, preconditioner, free_fall, contacts, .. } = &mut *buffers;
-        contacts.linearise(now, before, masses, &self.topology.areas, *free_fall, self.h);
-        if preconditioner.rigid.hold_components(self.two_grid, contacts.touching()) {
+        let ImplicitBuffers { preconditioner, contacts, .. } = &mut *buffers;
+        if preconditioner.rigid.hold_components(self.two_grid, contacts.touching().chain(touching)) {
             self.let_fall(buffers);
         }
         let ImplicitBuffers { masses, preconditioner, free_fall, fall, inertia, .. } = &mut *buffers;
@@ -239,12 +234,16 @@ impl<'a> ImplicitSheet<'a> {
         dispatch!(level, simd => vectors::inertia(simd, now, before, &fall.way, masses, &mut inertia.way));
         rigid.begin(self.two_grid, now, masses);
         rigid.remove_free(self.two_grid, masses, &mut inertia.way);
-        self.linearise(level, now, before, buffers);
+        self.linearise_energy(level, now, before, buffers);
         let ImplicitBuffers { preconditioner, faces, held_faces, contacts, .. } = &mut *buffers;
         let held = held_faces.iter().map(|&i| (&self.topology.face_packs[i as usize], &faces[i as usize]));
         preconditioner.rigid.hold(self.two_grid, now, held, face::coupling(self.laws[0]), contacts.resistances(now));
+    }
+
+    /// Begins the search with the residual, and the inertia as the first direction.
+    fn begin_search(&self, level: Level, force: Option<&Points>, is_touching: bool, buffers: &mut ImplicitBuffers) {
         let ImplicitBuffers { masses, preconditioner, fall, inertia, residual, gradient, correction, contacts, .. } =
-            &mut *buffers;
+            buffers;
         // Begins with the fall: the masses times it are the gravity that is left to be done.
         correction.clone_from(&fall.way);
         dispatch!(level, simd => vectors::residual(simd, [gradient, &fall.product], masses, residual));
@@ -257,31 +256,31 @@ impl<'a> ImplicitSheet<'a> {
         dispatch!(level, simd => vectors::add_masses(simd, masses, &fall.way, &mut fall.product));
         // What is held doesn't fall: if that had to be undone along the same direction, it would take the motion with it. A few
         // particles that touch something are stiff enough for that, where all others swing.
-        let held = if contacts.is_empty() { (-HELD * inertia.step(level, residual)).clamp(0.0, 1.0) } else { 1.0 };
+        let is_touching = is_touching || !contacts.is_empty();
+        let held = if is_touching { 1.0 } else { (-HELD * inertia.step(level, residual)).clamp(0.0, 1.0) };
         let fallen = [&fall.way[..], &fall.product[..]];
         dispatch!(level, simd => vectors::advance(simd, -held, fallen, [correction, residual]));
         dispatch!(level, simd => vectors::add_part(simd, -held, &fall.way, &mut inertia.way));
         dispatch!(level, simd => vectors::add_part(simd, -held, &fall.product, &mut inertia.product));
-        inertia.go(level, [correction, residual]);
-        buffers.latest.clear();
-        for _ in 0..ITERATIONS {
-            let ImplicitBuffers { masses, preconditioner, inertia, latest, residual, preconditioned, contacts, .. } =
-                &mut *buffers;
-            dispatch!(level, simd => preconditioner.apply(simd, self.two_grid, masses, contacts, residual, preconditioned));
-            // In exact numbers, it is conjugate to all directions but these two.
-            latest.turn_to(level, preconditioned, inertia);
-            self.multiply(level, buffers);
-            let ImplicitBuffers { latest, residual, correction, .. } = &mut *buffers;
-            latest.go(level, [correction, residual]);
-        }
-        vectors::go(&buffers.correction, self.farthest, now);
+    }
+
+    /// Makes a way of the residual.
+    fn precondition(&self, level: Level, buffers: &mut ImplicitBuffers) {
+        let ImplicitBuffers { masses, preconditioner, residual, preconditioned, contacts, .. } = buffers;
+        dispatch!(level, simd => preconditioner.apply(simd, self.two_grid, masses, contacts, residual, preconditioned));
+    }
+
+    /// Moves the particles by the correction, and ends the contacts.
+    fn move_particles(&self, gathered: &mut GatheredParticles, buffers: &mut ImplicitBuffers) {
+        let GatheredParticles { now, before } = gathered;
         let ImplicitBuffers { masses, contacts, correction, residual, .. } = buffers;
+        vectors::go(correction, self.farthest, now);
         contacts.finish(before, [correction, residual], masses, self.h, now);
     }
 
     /// The gradient of the energy at x + h v, what its second derivatives are made of, and their products with the way y - x and
     /// with the fall.
-    fn linearise(&self, level: Level, now: &[[f32; 4]], before: &[[f32; 4]], buffers: &mut ImplicitBuffers) {
+    fn linearise_energy(&self, level: Level, now: &[[f32; 4]], before: &[[f32; 4]], buffers: &mut ImplicitBuffers) {
         let Self { topology, laws, .. } = self;
         let ImplicitBuffers {
             masses,

@@ -8,7 +8,7 @@ use core::ops::Range;
 use bevy_math::Vec3A;
 
 use crate::{
-    constraint::implicit::contact::PredictedContact,
+    constraint::implicit::{between::ContactsBetween, contact::PredictedContact},
     contact::{
         body::Bodies,
         feature::{
@@ -204,6 +204,9 @@ pub struct FeatureContacts {
     is_begun: bool,
     /// Pairs that were to touch in this substep.
     predicted: Vec<PredictedPair>,
+    /// Those of two cloths, and their numbers.
+    between: ContactsBetween,
+    pairs_between: Vec<u32>,
     /// Whether that has searched already.
     is_searched: bool,
 }
@@ -212,6 +215,7 @@ impl FeatureContacts {
     /// Begins a step: nothing is known yet. Returns whether there may be anything to do.
     pub fn begin(&mut self, cloths: &[impl ClothInStep]) -> bool {
         self.is_begun = false;
+        self.between.predicted.clear();
         self.forget();
         let mut is_needed = cloths.iter().any(ClothInStep::collides);
         for (number, cloth) in cloths.iter().enumerate() {

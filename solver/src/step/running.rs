@@ -8,7 +8,7 @@ use bevy_tasks::TaskPool;
 use crate::{
     constraint::{
         attach::{grab, pin_motion},
-        implicit::{ImplicitSheet, contact::PredictedContact},
+        implicit::{ImplicitSheet, contact::PredictedContact, system::SheetSystem},
         strand::grid::StrandDirection,
     },
     contact::{self, body::Bodies, feature::ClothInStep, mesh::MeshContacts},
@@ -150,19 +150,18 @@ impl<'a> Running<'a> {
         scratch.implicit.contacts.predicted.clear();
     }
 
-    /// Solves what holds the cloth together in the part `span` of the step.
+    /// Solves what holds the cloth together in the part `span` of the step, unless it has an implicit step: prepares that.
     pub fn solve(&mut self, span: Range<f32>) {
         let Self { scratch, substep, .. } = self;
         let ctx = substep.ctx;
         match (substep.implicit, ctx.settings.method) {
-            (Some(sheet), _) => {
+            (Some(_), _) => {
                 grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
                 let Scratch { lanes, broad_phase, faces, bodies, implicit, simd_level, .. } = &mut **scratch;
                 let predicted = &mut implicit.contacts.predicted;
                 if substep.is_near {
                     contact::predict(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, predicted, *simd_level);
                 }
-                substep.solve_implicit(sheet, scratch);
             }
             (None, Method::Strands) => {
                 grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
@@ -176,8 +175,21 @@ impl<'a> Running<'a> {
             }
             (None, Method::Explicit) => grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h),
         }
+    }
+
+    /// Its part of the linear system of an implicit step, if it has one. It is the cloth of this `number`.
+    pub fn system(&mut self, number: u32) -> Option<SheetSystem<'_>> {
+        let sheet = self.substep.implicit?;
+        let Scratch { lanes, gathered, implicit, applied_force, simd_level, .. } = &mut *self.scratch;
+        let force = self.substep.applied(applied_force);
+        Some(SheetSystem { number, sheet, lanes, force, gathered, buffers: implicit, simd_level: *simd_level })
+    }
+
+    /// Lets bodies feel what is attached to them.
+    pub fn settle(&mut self) {
+        let Self { scratch, substep, .. } = self;
         let Scratch { lanes, body_attachments, .. } = &mut **scratch;
-        body_attachments.settle(lanes, ctx, substep.h);
+        body_attachments.settle(lanes, substep.ctx, substep.h);
     }
 
     /// Keeps the cloth out of obstacles and ends the substep.

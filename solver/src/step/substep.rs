@@ -215,12 +215,6 @@ impl Substep<'_> {
         false
     }
 
-    /// The implicit step of a sheet.
-    pub fn solve_implicit(&self, sheet: ImplicitSheet, scratch: &mut Scratch) {
-        let Scratch { lanes, gathered, implicit, applied_force, simd_level, .. } = scratch;
-        sheet.solve(lanes, self.applied(applied_force), gathered, implicit, *simd_level);
-    }
-
     /// All springs, colour after colour.
     pub fn solve_springs(&self, scratch: &mut Scratch) {
         let Scratch { lanes, gathered, ways, bending, simd_level, .. } = scratch;

@@ -37,6 +37,9 @@ const STUCK: f32 = 0.8;
 /// Cells of half a millimetre that meet something would be turned too far for one linear step, and be thrown off.
 const LARGEST_FALL: f32 = 0.05;
 
+/// Speed up to which parts of cloth that pressed on each other may part while they still count as touching, m/s.
+pub(super) const PARTING: f32 = 1e-3;
+
 /// How fast the normal force that friction knows follows the latest one: a share a substep.
 const FOLLOWING: f32 = 0.25;
 
@@ -74,10 +77,10 @@ pub(crate) struct ImplicitContacts {
 
 /// What a contact adds to the linear system.
 #[derive(Clone, Copy, Debug)]
-struct ContactTangent {
+pub(crate) struct ContactTangent {
     contact: PredictedContact,
     /// Its number among those that are predicted.
-    number: u32,
+    pub number: u32,
     /// Stiffness along the normal and across it, kg.
     along: f32,
     across: f32,
@@ -156,16 +159,19 @@ impl ImplicitContacts {
             let out = contact.normal.dot(past);
             let area = areas[contact.particles[0] as usize];
             let is_tiny = free_fall.length_squared() > LARGEST_FALL * LARGEST_FALL * area;
-            let fall = contact.normal.dot(free_fall) * contact.weights.iter().sum::<f32>();
-            if inverse_mass == 0.0 || is_tiny || out + fall.min(0.0) >= 0.0 {
+            let is_parting = if contact.is_at_obstacle() {
+                let fall = contact.normal.dot(free_fall) * contact.weights.iter().sum::<f32>();
+                out + fall.min(0.0) >= 0.0
+            } else {
+                out > if contact.load > 0.0 { PARTING * h } else { 0.0 }
+            };
+            if inverse_mass == 0.0 || is_tiny || is_parting {
                 contact.load = 0.0;
                 continue;
             }
             contact.push(contact.normal * (-out / inverse_mass), masses, now);
             let slide = (past - contact.normal * out).length();
-            let across = contact.friction * contact.load * h * h / slide.max(CREEP * h);
-            let along = STIFFNESS / inverse_mass;
-            self.tangents.push(ContactTangent { contact: *contact, number: number as u32, along, across });
+            self.tangents.push(ContactTangent::new(*contact, number as u32, inverse_mass, slide, h));
         }
     }
 
@@ -222,16 +228,12 @@ impl ImplicitContacts {
     ) {
         let Self { predicted, tangents, load, .. } = self;
         load.clear();
-        for ContactTangent { contact, number, along, across } in &*tangents {
+        for tangent in &*tangents {
+            let contact = &tangent.contact;
             let inverse_mass = contact.inverse_mass(masses);
-            let moved = contact.normal.dot(contact.weighted(correction));
-            let left = contact.normal.dot(contact.weighted_by(|i| masses.inverse(i), residual)) / inverse_mass;
-            let latest = -(*along * moved + left) / (h * h);
-            let followed = if contact.load > 0.0 { contact.load + (latest - contact.load) * FOLLOWING } else { latest };
-            predicted[*number as usize].load = followed.max(0.0);
-            let past = contact.past(now, before);
-            let slide = past - contact.normal * contact.normal.dot(past);
-            if *across > 0.0 && slide.length() < STUCK * CREEP * h {
+            let left = contact.weighted_by(|i| masses.inverse(i), residual) / inverse_mass;
+            predicted[tangent.number as usize].load = tangent.load(contact.weighted(correction), left, h);
+            if let Some(slide) = tangent.held_slide(contact.past(now, before), h) {
                 contact.push(slide / -inverse_mass, masses, now);
             }
         }
@@ -269,34 +271,34 @@ impl PredictedContact {
     }
 
     /// The sum of vectors of the particles by their weights.
-    fn weighted(&self, list: &[[f32; 4]]) -> Vec3A {
+    pub(super) fn weighted(&self, list: &[[f32; 4]]) -> Vec3A {
         self.weighted_by(|_| 1.0, list)
     }
 
     /// The same, of vectors times a number of each particle.
-    fn weighted_by(&self, number: impl Fn(usize) -> f32, list: &[[f32; 4]]) -> Vec3A {
+    pub(super) fn weighted_by(&self, number: impl Fn(usize) -> f32, list: &[[f32; 4]]) -> Vec3A {
         self.parts().map(|(i, weight)| point(&list[i]) * (weight * number(i))).sum()
     }
 
     /// Adds a vector to those of the particles, times their weights.
-    fn spread(&self, vector: Vec3A, list: &mut [[f32; 4]]) {
+    pub(super) fn spread(&self, vector: Vec3A, list: &mut [[f32; 4]]) {
         self.spread_by(vector, |_| 1.0, list);
     }
 
     /// The same, times a number of each particle too.
-    fn spread_by(&self, vector: Vec3A, number: impl Fn(usize) -> f32, list: &mut [[f32; 4]]) {
+    pub(super) fn spread_by(&self, vector: Vec3A, number: impl Fn(usize) -> f32, list: &mut [[f32; 4]]) {
         for (i, weight) in self.parts() {
             list[i] = extended(point(&list[i]) + vector * (weight * number(i)));
         }
     }
 
     /// How much one unit of force moves what touches, by a number of each particle.
-    fn compliance(&self, number: impl Fn(usize) -> f32) -> f32 {
+    pub(super) fn compliance(&self, number: impl Fn(usize) -> f32) -> f32 {
         self.parts().map(|(i, weight)| weight * weight * number(i)).sum()
     }
 
     /// Effective inverse mass, 1/kg.
-    fn inverse_mass(&self, masses: &Masses) -> f32 {
+    pub(super) fn inverse_mass(&self, masses: &Masses) -> f32 {
         match self.count {
             1 => masses.inverse(self.particles[0] as usize),
             _ => friction::effective_inverse_mass(self.weights, self.particles.map(|i| masses.inverse(i as usize))),
@@ -304,24 +306,46 @@ impl PredictedContact {
     }
 
     /// Moves the particles by an impulse times h, kg m.
-    fn push(&self, impulse: Vec3A, masses: &Masses, now: &mut [[f32; 4]]) {
+    pub(super) fn push(&self, impulse: Vec3A, masses: &Masses, now: &mut [[f32; 4]]) {
         self.spread_by(impulse, |i| masses.inverse(i), now);
     }
 
     /// The way past what is touched from `before` to `now`, m.
-    fn past(&self, now: &[[f32; 4]], before: &[[f32; 4]]) -> Vec3A {
+    pub(super) fn past(&self, now: &[[f32; 4]], before: &[[f32; 4]]) -> Vec3A {
         self.weighted(now) - self.weighted(before) - self.way
     }
 }
 
 impl ContactTangent {
+    /// That of a contact with an effective `inverse_mass` (1/kg), where a substep of `h` seconds begins with a `slide`, m.
+    pub fn new(contact: PredictedContact, number: u32, inverse_mass: f32, slide: f32, h: f32) -> Self {
+        let across = contact.friction * contact.load * h * h / slide.max(CREEP * h);
+        Self { contact, number, along: STIFFNESS / inverse_mass, across }
+    }
+
+    /// The normal force that friction of the next substep knows, N, where a correction has `moved` it (m) and a residual is `left`
+    /// of it, kg m.
+    pub fn load(&self, moved: Vec3A, left: Vec3A, h: f32) -> f32 {
+        let Self { contact: PredictedContact { normal, load, .. }, along, .. } = *self;
+        let latest = -normal.dot(moved * along + left) / (h * h);
+        let followed = if load > 0.0 { load + (latest - load) * FOLLOWING } else { latest };
+        followed.max(0.0)
+    }
+
+    /// The slide within a way `past` what is touched, m, if friction has held it: it is to be put back.
+    pub fn held_slide(&self, past: Vec3A, h: f32) -> Option<Vec3A> {
+        let normal = self.contact.normal;
+        let slide = past - normal * normal.dot(past);
+        (self.across > 0.0 && slide.length() < STUCK * CREEP * h).then_some(slide)
+    }
+
     /// What resists a way past the surface, kg m.
-    fn resist(&self, way: Vec3A) -> Vec3A {
+    pub(super) fn resist(&self, way: Vec3A) -> Vec3A {
         self.by_direction(way, [self.along, self.across])
     }
 
     /// What the root of what the contact leaves of an inverse of the diagonal takes from a way, where one unit of force moves the contact by `compliance` (1/kg).
-    fn taken(&self, compliance: f32, way: Vec3A) -> Vec3A {
+    pub(super) fn taken(&self, compliance: f32, way: Vec3A) -> Vec3A {
         let part = |stiffness: f32| ((1.0 + stiffness * compliance).sqrt().recip() - 1.0) / compliance;
         self.by_direction(way, [self.along, self.across].map(part))
     }

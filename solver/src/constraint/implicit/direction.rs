@@ -23,26 +23,26 @@ impl Direction {
         self.per_curvature = 0.0;
     }
 
-    /// How far to go along it, as a share of it.
-    pub fn step(&mut self, level: Level, residual: &[[f32; 4]]) -> f32 {
-        let Self { way, product, per_curvature } = self;
-        let [curvature, slope] = dispatch!(level, simd => vectors::dot_both(simd, way, [product, residual]));
-        *per_curvature = if curvature > f32::MIN_POSITIVE { curvature.recip() } else { 0.0 };
-        slope * *per_curvature
+    /// One over a curvature, 1/(kg m²), if there is one.
+    pub fn per_curvature(curvature: f32) -> f32 {
+        if curvature > f32::MIN_POSITIVE { curvature.recip() } else { 0.0 }
     }
 
-    /// Goes that far: the correction grows, and the residual shrinks.
-    pub fn go(&mut self, level: Level, [correction, residual]: [&mut [[f32; 4]]; 2]) {
-        let step = self.step(level, residual);
+    /// The curvature along it, kg m², and the slope, which goes down.
+    pub fn measure(&self, level: Level, residual: &[[f32; 4]]) -> [f32; 2] {
+        let Self { way, product, .. } = self;
+        dispatch!(level, simd => vectors::dot_both(simd, way, [product, residual]))
+    }
+
+    /// How far to go along it, as a share of it.
+    pub fn step(&self, level: Level, residual: &[[f32; 4]]) -> f32 {
+        let [curvature, slope] = self.measure(level, residual);
+        slope * Self::per_curvature(curvature)
+    }
+
+    /// Goes so far: the correction grows, and the residual shrinks.
+    pub fn advance(&self, level: Level, step: f32, [correction, residual]: [&mut [[f32; 4]]; 2]) {
         let Self { way, product, .. } = self;
         dispatch!(level, simd => vectors::advance(simd, step, [way, product], [correction, residual]));
-    }
-
-    /// Turns it to the `next` way, made conjugate to where it led and to another direction.
-    pub fn turn_to(&mut self, level: Level, next: &[[f32; 4]], other: &Self) {
-        let Self { way, product, per_curvature } = self;
-        let [back, along] = dispatch!(level, simd => vectors::dot_both(simd, next, [product, &other.product]));
-        let parts = [-back * *per_curvature, -along * other.per_curvature];
-        dispatch!(level, simd => vectors::turn(simd, next, parts, &other.way, way));
     }
 }

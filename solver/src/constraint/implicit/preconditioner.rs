@@ -20,7 +20,7 @@ pub(super) struct Preconditioner {
     /// 1/ρ, m²/kg: the coarse matrix is that of density 1.
     per_density: f32,
     /// Inverse of the diagonal, 1/kg. Zero for a particle that is fixed.
-    inverse_diagonal: Vec<f32>,
+    pub inverse_diagonal: Vec<f32>,
     /// 1 for particles that aggregates move, 0 for those that are held.
     is_moved: Vec<f32>,
     /// Values at the aggregates.

@@ -1,17 +1,20 @@
 //! Pairs that will touch, for the implicit steps of cloths: their contact is solved along with the cloth.
 //!
-//! Only of pairs within one cloth, or with obstacles that it doesn't push: what happens to another cloth, or a body, isn't known
-//! while this one is solved.
+//! Only of pairs of cloths that all have implicit steps, and with obstacles that they don't push: what happens to another cloth, or
+//! a body, isn't known meanwhile.
 
 use core::ops::Range;
 
 use bevy_math::Vec3A;
 
 use crate::{
-    constraint::implicit::contact::PredictedContact,
+    constraint::implicit::{
+        between::{ContactBetween, ContactsBetween},
+        contact::PredictedContact,
+    },
     contact::feature::{
         ClothInStep, FeatureContacts,
-        pair::{FeatureContact, FeaturePoints},
+        pair::{FeatureContact, FeaturePoints, Separation},
     },
     particles::contact_load::FeatureLoad,
 };
@@ -34,6 +37,8 @@ impl FeatureContacts {
     /// that have an implicit step.
     pub fn predict(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, h: f32, dt: f32) {
         self.predicted.clear();
+        self.between.predicted.clear();
+        self.pairs_between.clear();
         self.is_searched = cloths.iter().any(ClothInStep::is_implicit);
         if !self.is_searched {
             return;
@@ -52,6 +57,17 @@ impl FeatureContacts {
                 let fixed = self.fixed.get((point as usize).wrapping_sub(count));
                 fixed.is_some_and(|fixed| cloth.bodies().get(fixed.obstacle as usize).is_none())
             };
+            if let Some(other) = (number + 1..cloths.len()).find(|&other| pair.is_of(&self.first[other..])) {
+                if cloth.is_implicit() && cloths[other].is_implicit() {
+                    pair.is_solved_by_cloth = true;
+                    let ranges = [number, other].map(|i| self.first[i]..self.first[i + 1]);
+                    if let Some(sides) = pair.predict_between(&self.points, ranges) {
+                        self.between.predicted.push(ContactBetween { sheets: [number as u32, other as u32], sides });
+                        self.pairs_between.push(i);
+                    }
+                }
+                continue;
+            }
             if !cloth.is_implicit() || !pair.points.iter().all(|&point| own.contains(&point) || is_fixed(point)) {
                 continue;
             }
@@ -76,6 +92,14 @@ impl FeatureContacts {
                 self.pairs[predicted.pair as usize].load = solved.load;
             }
         }
+        for (&pair, solved) in self.pairs_between.iter().zip(&self.between.predicted) {
+            self.pairs[pair as usize].load = solved.sides[0].load;
+        }
+    }
+
+    /// The contacts between cloths that are solved as one system.
+    pub fn between_mut(&mut self) -> &mut ContactsBetween {
+        &mut self.between
     }
 
     /// Hands normal forces over to the cloths, for pairs that another search finds, or another step.
@@ -122,39 +146,50 @@ impl FeatureContacts {
 }
 
 impl FeatureContact {
+    /// Whether it has a point of the cloth whose points begin with the first of these numbers, and end with the next.
+    fn is_of(&self, ends: &[u32]) -> bool {
+        self.points.iter().any(|point| (ends[0]..ends[1]).contains(point))
+    }
+
     /// The contact that the features will come to within a substep, if the points of their cloth, those of the numbers `own`, go on
     /// as they do and have a `free_fall`, m.
-    pub(crate) fn predict(
-        &self,
-        points: &FeaturePoints,
-        own: Range<u32>,
-        free_fall: Vec3A,
-    ) -> Option<PredictedContact> {
-        let fallen = self.distance + self.taper.max(0.0) + free_fall.length();
-        if self.is_beyond(points, fallen) {
+    fn predict(&self, points: &FeaturePoints, own: Range<u32>, free_fall: Vec3A) -> Option<PredictedContact> {
+        if self.is_beyond(points, self.distance + self.taper.max(0.0) + free_fall.length()) {
             return None;
         }
         let apart = self.look(points);
-        let is_own = self.points.map(|point| own.contains(&point));
-        let weights: [f32; 4] = core::array::from_fn(|k| if is_own[k] { apart.weights[k] } else { 0.0 });
-        let fall = apart.normal.dot(free_fall) * weights.iter().sum::<f32>();
+        let side = self.side(&apart, own.clone())?;
+        let fall = apart.normal.dot(free_fall) * side.weights.iter().sum::<f32>();
         if apart.gap + fall.min(0.0) >= apart.distance {
             return None;
         }
-        let way = |k: usize| {
-            let i = self.points[k] as usize;
-            (points.position[i] - points.previous[i]) * apart.weights[k]
-        };
-        // The weights of what is touched are negative.
-        let way = -(0..4).filter(|&k| !is_own[k]).map(way).sum::<Vec3A>();
+        let of_others = self.points.into_iter().zip(apart.weights).filter(|(point, _)| !own.contains(point));
+        let moved = |i: usize| points.position[i] - points.previous[i];
+        // Their weights are negative.
+        let way = -of_others.map(|(point, weight)| moved(point as usize) * weight).sum::<Vec3A>();
+        Some(PredictedContact { way, ..side })
+    }
+
+    /// The same of two cloths, whose points are those of the numbers `ranges`: the part of each. They fall alike.
+    fn predict_between(&self, points: &FeaturePoints, ranges: [Range<u32>; 2]) -> Option<[PredictedContact; 2]> {
+        if self.is_beyond(points, self.distance + self.taper.max(0.0)) {
+            return None;
+        }
+        let apart = self.look(points);
+        let [one, other] = ranges.map(|range| self.side(&apart, range));
+        (apart.gap < apart.distance).then_some([one?, other?])
+    }
+
+    /// The part that the points of the numbers `own` have in a contact.
+    fn side(&self, apart: &Separation, own: Range<u32>) -> Option<PredictedContact> {
         let some = self.points.into_iter().find(|point| own.contains(point))?;
-        let particles = self.points.map(|point| if own.contains(&point) { point } else { some } - own.start);
+        let is_own = self.points.map(|point| own.contains(&point));
         Some(PredictedContact {
-            particles,
+            particles: self.points.map(|point| if own.contains(&point) { point } else { some } - own.start),
             count: 4,
-            weights,
+            weights: core::array::from_fn(|k| if is_own[k] { apart.weights[k] } else { 0.0 }),
             normal: apart.normal,
-            way,
+            way: Vec3A::ZERO,
             friction: self.friction,
             load: self.load,
         })

@@ -9,7 +9,7 @@ use crate::{
 
 /// Acceleration at which edge and face go apart at most, m/s²: fifty times that of gravity. Where they can't part, more would put
 /// energy into the cloth for ever.
-const PULL: f32 = 500.0;
+const PULL: f32 = 2000.0;
 
 /// An edge that pierces a face of cloth, and the way out.
 ///

@@ -1,0 +1,108 @@
+//! Sheets that are solved as one linear system: one by itself, or several that touch each other.
+
+use fearless_simd::dispatch;
+
+use crate::{
+    constraint::implicit::{
+        ITERATIONS, ImplicitBuffers, ImplicitSheet, between::ContactsBetween, direction::Direction, vectors,
+    },
+    layout::points::Points,
+    layout::simd::SimdLevel,
+    particles::{gathered::GatheredParticles, lanes::Lanes},
+};
+
+/// A sheet in a substep.
+pub(crate) struct SheetSystem<'a> {
+    /// Its number among the cloths that are stepped together.
+    pub number: u32,
+    pub sheet: ImplicitSheet<'a>,
+    /// Its particles: where they would be by themselves, without gravity.
+    pub lanes: &'a mut Lanes,
+    /// The force on each of them, N.
+    pub force: Option<&'a Points>,
+    pub gathered: &'a mut GatheredParticles,
+    pub buffers: &'a mut ImplicitBuffers,
+    pub simd_level: SimdLevel,
+}
+
+/// Moves the particles of sheets to where gravity, forces, what holds them together and what they touch take them.
+pub(crate) fn solve(sheets: &mut [SheetSystem], between: &mut ContactsBetween) {
+    for SheetSystem { sheet, lanes, gathered, buffers, simd_level, .. } in &mut *sheets {
+        gathered.read(lanes, true, *simd_level);
+        let count = gathered.now.len().next_multiple_of(2);
+        gathered.now.resize(count, [0.0; 4]);
+        gathered.before.resize(count, [0.0; 4]);
+        sheet.linearise_contacts(gathered, buffers);
+    }
+    between.linearise(sheets);
+    for SheetSystem { number, sheet, gathered, buffers, simd_level, .. } in &mut *sheets {
+        let touching = between.touching(*number);
+        sheet.linearise(simd_level.level(), touching, gathered, buffers);
+    }
+    between.pull(sheets);
+    between.multiply(sheets, |buffers| &mut buffers.inertia);
+    between.multiply(sheets, |buffers| &mut buffers.fall);
+    for SheetSystem { number, sheet, force, buffers, simd_level, .. } in &mut *sheets {
+        let is_touching = between.touching(*number).next().is_some();
+        sheet.begin_search(simd_level.level(), *force, is_touching, buffers);
+    }
+    go(sheets, |buffers| &mut buffers.inertia);
+    sheets.iter_mut().for_each(|system| system.buffers.latest.clear());
+    for _ in 0..ITERATIONS {
+        between.scale_residuals(sheets);
+        for SheetSystem { sheet, buffers, simd_level, .. } in &mut *sheets {
+            sheet.precondition(simd_level.level(), buffers);
+        }
+        between.scale_ways(sheets);
+        turn(sheets);
+        for SheetSystem { sheet, buffers, simd_level, .. } in &mut *sheets {
+            sheet.multiply(simd_level.level(), buffers);
+        }
+        between.multiply(sheets, |buffers| &mut buffers.latest);
+        go(sheets, |buffers| &mut buffers.latest);
+    }
+    for SheetSystem { sheet, gathered, buffers, .. } in &mut *sheets {
+        sheet.move_particles(gathered, buffers);
+    }
+    between.finish(sheets);
+    for SheetSystem { lanes, gathered, simd_level, .. } in sheets {
+        gathered.write(lanes, *simd_level);
+    }
+}
+
+/// Goes along a direction of search as far as is best for all sheets.
+fn go(sheets: &mut [SheetSystem], direction: fn(&mut ImplicitBuffers) -> &mut Direction) {
+    let mut sums = [0.0; 2];
+    for SheetSystem { buffers, simd_level, .. } in &mut *sheets {
+        let residual = core::mem::take(&mut buffers.residual);
+        let measured = direction(buffers).measure(simd_level.level(), &residual);
+        buffers.residual = residual;
+        sums = core::array::from_fn(|k| sums[k] + measured[k]);
+    }
+    let per_curvature = Direction::per_curvature(sums[0]);
+    for SheetSystem { buffers, simd_level, .. } in sheets {
+        let [mut correction, mut residual] =
+            [core::mem::take(&mut buffers.correction), core::mem::take(&mut buffers.residual)];
+        let along = direction(buffers);
+        along.per_curvature = per_curvature;
+        along.advance(simd_level.level(), sums[1] * per_curvature, [&mut correction, &mut residual]);
+        (buffers.correction, buffers.residual) = (correction, residual);
+    }
+}
+
+/// Turns the latest direction of all sheets to what the preconditioner has made of the residual.
+fn turn(sheets: &mut [SheetSystem]) {
+    let mut sums = [0.0; 2];
+    for SheetSystem { buffers, simd_level, .. } in &mut *sheets {
+        let ImplicitBuffers { latest, inertia, preconditioned, .. } = &**buffers;
+        let products = [&latest.product[..], &inertia.product];
+        let overlaps = dispatch!(simd_level.level(), simd => vectors::dot_both(simd, preconditioned, products));
+        sums = core::array::from_fn(|k| sums[k] + overlaps[k]);
+    }
+    for SheetSystem { buffers, simd_level, .. } in sheets {
+        let ImplicitBuffers { latest, inertia, preconditioned, .. } = &mut **buffers;
+        // In exact numbers, it is conjugate to all directions but these two.
+        let parts = [-sums[0] * latest.per_curvature, -sums[1] * inertia.per_curvature];
+        dispatch!(simd_level.level(), simd => vectors::turn(simd, preconditioned, parts, &inertia.way, &mut latest.way));
+    }
+}
