@@ -34,12 +34,8 @@ use fearless_simd::{Level, Simd, dispatch};
 use crate::{
     constraint::{
         implicit::{
-            contact::{ContactTangent, ImplicitContacts, PredictedContact},
-            direction::Direction,
-            edge::EdgeTangent,
-            face::FaceTangent,
-            preconditioner::Preconditioner,
-            vectors::Masses,
+            contact::ImplicitContacts, direction::Direction, edge::EdgeTangent, face::FaceTangent,
+            preconditioner::Preconditioner, vectors::Masses,
         },
         strand::law::DirectionModuli,
         unstructured::bend::{
