@@ -263,9 +263,10 @@ impl ParticleProjector<'_, '_> {
         while left != 0 {
             let i = left.trailing_zeros() as usize;
             left &= left - 1;
-            let [normal, way] = [normals, ways].map(|lists| Vec3A::from(lists.map(|lanes| lanes[i])));
+            let normal_and_way = [normals, ways].map(|lists| Vec3A::from(lists.map(|lanes| lanes[i])));
             let particle = (block * LANES + i) as u32;
-            contacts.push(PredictedContact::of_particle(particle, normal, way, self.sweep.friction));
+            let inverse_mass = self.run.inverse_mass[block][i];
+            contacts.push(PredictedContact::of_particle(particle, inverse_mass, normal_and_way, self.sweep.friction));
         }
     }
 

@@ -39,7 +39,7 @@ impl ContactsBetween {
             let index = |cloth: u32| sheets.iter().position(|system| system.number == cloth);
             let [Some(one), Some(other)] = predicted.sheets.map(index) else { continue };
             let contact = ContactBetween { sheets: [one as u32, other as u32], ..*predicted };
-            let inverse_mass = contact.sum(sheets, |side, system| side.inverse_mass(&system.buffers.masses));
+            let [PredictedContact { inverse_mass, .. }, _] = contact.sides;
             let past =
                 contact.vector_sum(sheets, |side, system| side.past(&system.gathered.now, &system.gathered.before));
             let [first, _] = &mut predicted.sides;
@@ -128,7 +128,7 @@ impl ContactsBetween {
     pub fn finish(&mut self, sheets: &mut [SheetSystem]) {
         let Some(h) = sheets.first().map(|system| system.sheet.h) else { return };
         for (contact, tangent) in &self.tangents {
-            let inverse_mass = contact.sum(sheets, |side, system| side.inverse_mass(&system.buffers.masses));
+            let [PredictedContact { inverse_mass, .. }, _] = contact.sides;
             let moved = contact.vector_sum(sheets, |side, system| side.weighted(&system.buffers.correction));
             let left = contact.vector_sum(sheets, |side, system| {
                 side.weighted_by(|i| system.buffers.masses.inverse(i), &system.buffers.residual)
@@ -154,11 +154,6 @@ impl ContactBetween {
         let [one, other] = self.sheets.map(|i| i as usize);
         let pair = sheets.get_disjoint_mut([one, other]).ok();
         self.sides.iter().zip(pair.into_iter().flatten())
-    }
-
-    /// The sum of a number of both sides.
-    fn sum(&self, sheets: &[SheetSystem], of: impl Fn(&PredictedContact, &SheetSystem) -> f32) -> f32 {
-        self.sides.iter().zip(self.sheets).map(|(side, i)| of(side, &sheets[i as usize])).sum()
     }
 
     /// The sum of a vector of both sides.

@@ -16,10 +16,7 @@
 
 use bevy_math::Vec3A;
 
-use crate::{
-    constraint::implicit::vectors::{Masses, extended, point},
-    contact::friction,
-};
+use crate::constraint::implicit::vectors::{Masses, extended, point};
 
 /// Stiffness α along the normal, in masses of the particle: no unit.
 ///
@@ -56,6 +53,8 @@ pub(crate) struct PredictedContact {
     pub normal: Vec3A,
     /// Way of what is touched within the substep, m.
     pub way: Vec3A,
+    /// Effective inverse mass of what touches, 1/kg: of both sides where both move.
+    pub inverse_mass: f32,
     /// Coulomb friction, no unit.
     pub friction: f32,
     /// Normal force, N: in the substep before at first, and in this one once it is solved. Zero where nothing touches.
@@ -154,7 +153,7 @@ impl ImplicitContacts {
             if contact.is_of_particle() {
                 contact.load = self.load.get(contact.particles[0] as usize).copied().unwrap_or(0.0);
             }
-            let inverse_mass = contact.inverse_mass(masses);
+            let inverse_mass = contact.inverse_mass;
             let past = contact.past(now, before);
             let out = contact.normal.dot(past);
             let area = areas[contact.particles[0] as usize];
@@ -230,7 +229,7 @@ impl ImplicitContacts {
         load.clear();
         for tangent in &*tangents {
             let contact = &tangent.contact;
-            let inverse_mass = contact.inverse_mass(masses);
+            let inverse_mass = contact.inverse_mass;
             let left = contact.weighted_by(|i| masses.inverse(i), residual) / inverse_mass;
             predicted[tangent.number as usize].load = tangent.load(contact.weighted(correction), left, h);
             if let Some(slide) = tangent.held_slide(contact.past(now, before), h) {
@@ -251,8 +250,9 @@ impl ImplicitContacts {
 
 impl PredictedContact {
     /// That of one particle.
-    pub fn of_particle(particle: u32, normal: Vec3A, way: Vec3A, friction: f32) -> Self {
-        Self { particles: [particle; 4], count: 1, weights: [1.0, 0.0, 0.0, 0.0], normal, way, friction, load: 0.0 }
+    pub fn of_particle(particle: u32, inverse_mass: f32, [normal, way]: [Vec3A; 2], friction: f32) -> Self {
+        let (particles, weights) = ([particle; 4], [1.0, 0.0, 0.0, 0.0]);
+        Self { particles, count: 1, weights, normal, way, inverse_mass, friction, load: 0.0 }
     }
 
     fn is_of_particle(&self) -> bool {
@@ -295,14 +295,6 @@ impl PredictedContact {
     /// How much one unit of force moves what touches, by a number of each particle.
     pub(super) fn compliance(&self, number: impl Fn(usize) -> f32) -> f32 {
         self.parts().map(|(i, weight)| weight * weight * number(i)).sum()
-    }
-
-    /// Effective inverse mass, 1/kg.
-    pub(super) fn inverse_mass(&self, masses: &Masses) -> f32 {
-        match self.count {
-            1 => masses.inverse(self.particles[0] as usize),
-            _ => friction::effective_inverse_mass(self.weights, self.particles.map(|i| masses.inverse(i as usize))),
-        }
     }
 
     /// Moves the particles by an impulse times h, kg m.

@@ -12,9 +12,12 @@ use crate::{
         between::{ContactBetween, ContactsBetween},
         contact::PredictedContact,
     },
-    contact::feature::{
-        ClothInStep, FeatureContacts,
-        pair::{FeatureContact, FeaturePoints, Separation},
+    contact::{
+        feature::{
+            ClothInStep, FeatureContacts,
+            pair::{FeatureContact, FeaturePoints, Separation},
+        },
+        friction,
     },
     particles::contact_load::FeatureLoad,
 };
@@ -158,7 +161,7 @@ impl FeatureContact {
             return None;
         }
         let apart = self.look(points);
-        let side = self.side(&apart, own.clone())?;
+        let side = self.side(&apart, points, own.clone())?;
         let fall = apart.normal.dot(free_fall) * side.weights.iter().sum::<f32>();
         if apart.gap + fall.min(0.0) >= apart.distance {
             return None;
@@ -176,15 +179,17 @@ impl FeatureContact {
             return None;
         }
         let apart = self.look(points);
-        let [one, other] = ranges.map(|range| self.side(&apart, range));
+        let [one, other] = ranges.map(|range| self.side(&apart, points, range));
         (apart.gap < apart.distance).then_some([one?, other?])
     }
 
     /// The part that the points of the numbers `own` have in a contact.
-    fn side(&self, apart: &Separation, own: Range<u32>) -> Option<PredictedContact> {
+    fn side(&self, apart: &Separation, points: &FeaturePoints, own: Range<u32>) -> Option<PredictedContact> {
         let some = self.points.into_iter().find(|point| own.contains(point))?;
         let is_own = self.points.map(|point| own.contains(&point));
+        let inverse_masses = self.points.map(|i| points.inverse_mass[i as usize]);
         Some(PredictedContact {
+            inverse_mass: friction::effective_inverse_mass(apart.weights, inverse_masses),
             particles: self.points.map(|point| if own.contains(&point) { point } else { some } - own.start),
             count: 4,
             weights: core::array::from_fn(|k| if is_own[k] { apart.weights[k] } else { 0.0 }),
