@@ -71,7 +71,7 @@ pub(crate) struct ImplicitContacts {
     /// Normal force on each particle, N. Empty where nothing touched in the substep before.
     load: Vec<f32>,
     /// Residuals while they are scaled, kg m.
-    unscaled: Vec<[[f32; 4]; 4]>,
+    unscaled: Vec<[f32; 4]>,
 }
 
 /// What a contact adds to the linear system.
@@ -196,7 +196,7 @@ impl ImplicitContacts {
         self.unscaled.clear();
         for tangent in &self.tangents {
             let contact = &tangent.contact;
-            self.unscaled.push(contact.particles.map(|i| residual[i as usize]));
+            self.unscaled.extend(contact.parts().map(|(i, _)| residual[i]));
             let way = contact.weighted_by(|i| inverse_diagonal[i], residual);
             contact.spread(tangent.taken(contact.compliance(|i| inverse_diagonal[i]), way), residual);
         }
@@ -205,10 +205,13 @@ impl ImplicitContacts {
     /// Scales what the preconditioner has made of the residual, and puts that back.
     pub fn scale_ways(&self, inverse_diagonal: &[f32], residual: &mut [[f32; 4]], ways: &mut [[f32; 4]]) {
         // Backwards: so the whole is symmetric.
-        for (tangent, unscaled) in self.tangents.iter().zip(&self.unscaled).rev() {
+        let mut unscaled = &self.unscaled[..];
+        for tangent in self.tangents.iter().rev() {
             let contact = &tangent.contact;
-            for (&i, unscaled) in contact.particles.iter().zip(unscaled) {
-                residual[i as usize] = *unscaled;
+            let (others, own) = unscaled.split_at(unscaled.len() - usize::from(contact.count));
+            unscaled = others;
+            for ((i, _), unscaled) in contact.parts().zip(own) {
+                residual[i] = *unscaled;
             }
             let taken = tangent.taken(contact.compliance(|i| inverse_diagonal[i]), contact.weighted(ways));
             contact.spread_by(taken, |i| inverse_diagonal[i], ways);
