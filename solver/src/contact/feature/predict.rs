@@ -139,7 +139,8 @@ impl FeatureContacts {
         }
     }
 
-    /// What a pair is of, whatever search has found it: particles by their numbers in the cloth whose `first` that is.
+    /// What a pair is of, whatever search has found it: particles by their numbers in the cloth whose `first` that is. Points of
+    /// meshes beyond 65,536 may share a key: then friction begins with the force of another pair.
     fn key(&self, pair: &FeatureContact, first: u32) -> [u32; 4] {
         pair.points.map(|point| match self.fixed.get((point as usize).wrapping_sub(self.start.len())) {
             Some(fixed) => OF_OBSTACLE | fixed.obstacle << OBSTACLE_SHIFT | fixed.point,
