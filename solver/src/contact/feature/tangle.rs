@@ -7,7 +7,7 @@ use crate::{
     geometry::{closest_point, intersection::pierces},
 };
 
-/// Acceleration at which edge and face go apart at most, m/s²: fifty times that of gravity. Where they can't part, more would put
+/// Acceleration at which edge and face go apart at most, m/s²: two hundred times that of gravity. Where they can't part, more would put
 /// energy into the cloth for ever.
 const PULL: f32 = 2000.0;
 
