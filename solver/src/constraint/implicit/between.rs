@@ -4,7 +4,7 @@ use bevy_math::Vec3A;
 
 use crate::constraint::implicit::{
     ImplicitBuffers,
-    contact::{ContactTangent, PARTING, PredictedContact},
+    contact::{ContactTangent, PredictedContact},
     direction::Direction,
     system::SheetSystem,
 };
@@ -44,8 +44,7 @@ impl ContactsBetween {
                 contact.vector_sum(sheets, |side, system| side.past(&system.gathered.now, &system.gathered.before));
             let [first, _] = &mut predicted.sides;
             let out = first.normal.dot(past);
-            let is_parting = out > if first.load > 0.0 { PARTING * h } else { 0.0 };
-            if inverse_mass == 0.0 || is_parting {
+            if inverse_mass == 0.0 || first.is_parting(out, h) {
                 first.load = 0.0;
                 continue;
             }
@@ -54,7 +53,7 @@ impl ContactsBetween {
                 side.push(impulse, &system.buffers.masses, &mut system.gathered.now);
             }
             let slide = (past - contact.sides[0].normal * out).length();
-            let tangent = ContactTangent::new(contact.sides[0], number as u32, inverse_mass, slide, h);
+            let tangent = ContactTangent::new(contact.sides[0], number as u32, slide, h);
             self.tangents.push((contact, tangent));
         }
     }

@@ -1,18 +1,19 @@
-//! Contact with obstacles within the implicit step: what would come in is stopped while the cloth is solved, not after it.
+//! Contact within the implicit step: what would come into something is stopped while the cloth is solved, not after it.
 //!
 //! Contact that comes only after the step is too late for the cloth around: it falls as if nothing held it, and what is pushed
-//! back then is a strain that few iterations don't carry to what hangs over. So whatever particle would come into an obstacle within
-//! the substep has two more terms in the linear system, in its way w past the surface, with n the outward normal:
+//! back then is a strain that few iterations don't carry to what hangs over. So a particle, or the nearest place of a triangle or
+//! edge, that would come into an obstacle or another part of the cloth has two more terms in the linear system. With its way w past
+//! what is touched, the outward normal n, and its effective mass m:
 //!
 //! α m (n · w)²/2  +  κ |w - n (n · w)|²/2,    κ = h² μ λ / max(|v|, ε h)
 //!
-//! The first keeps it where it is along the normal, where its velocity has been stopped before. The second is Coulomb friction as a viscous force whose coefficient follows
-//! the slide v that the substep begins with, as in Li et al., "Incremental Potential Contact" (2020), section 5, with the normal
-//! force λ of the substep before: so it is as strong as Coulomb's where the particle slides, and holds where it doesn't. Both are
-//! zero at the start of the substep and positive definite, so that contact puts no energy in.
+//! The first keeps it where it is along the normal, where its velocity has been stopped before. The second is Coulomb friction as
+//! a viscous force whose coefficient follows the slide v that the substep begins with, as in Li et al., "Incremental Potential
+//! Contact" (2020), section 5, with the normal force λ of the substep before: so it is as strong as Coulomb's where it slides, and
+//! holds where it doesn't. Both are zero at the start of the substep and positive definite, so that contact puts no energy in.
 //!
 //! λ is what is left of the residual along the normal: also where few iterations haven't converged, it is the force that would
-//! have moved the particle on.
+//! have moved the cloth on.
 
 use bevy_math::Vec3A;
 
@@ -35,7 +36,7 @@ const STUCK: f32 = 0.8;
 const LARGEST_FALL: f32 = 0.05;
 
 /// Speed up to which parts of cloth that pressed on each other may part while they still count as touching, m/s.
-pub(super) const PARTING: f32 = 1e-3;
+const PARTING: f32 = 1e-3;
 
 /// How fast the normal force that friction knows follows the latest one: a share a substep.
 const FOLLOWING: f32 = 0.25;
@@ -153,7 +154,6 @@ impl ImplicitContacts {
             if contact.is_of_particle() {
                 contact.load = self.load.get(contact.particles[0] as usize).copied().unwrap_or(0.0);
             }
-            let inverse_mass = contact.inverse_mass;
             let past = contact.past(now, before);
             let out = contact.normal.dot(past);
             let area = areas[contact.particles[0] as usize];
@@ -162,15 +162,15 @@ impl ImplicitContacts {
                 let fall = contact.normal.dot(free_fall) * contact.weights.iter().sum::<f32>();
                 out + fall.min(0.0) >= 0.0
             } else {
-                out > if contact.load > 0.0 { PARTING * h } else { 0.0 }
+                contact.is_parting(out, h)
             };
-            if inverse_mass == 0.0 || is_tiny || is_parting {
+            if contact.inverse_mass == 0.0 || is_tiny || is_parting {
                 contact.load = 0.0;
                 continue;
             }
-            contact.push(contact.normal * (-out / inverse_mass), masses, now);
+            contact.push(contact.normal * (-out / contact.inverse_mass), masses, now);
             let slide = (past - contact.normal * out).length();
-            self.tangents.push(ContactTangent::new(*contact, number as u32, inverse_mass, slide, h));
+            self.tangents.push(ContactTangent::new(*contact, number as u32, slide, h));
         }
     }
 
@@ -267,6 +267,11 @@ impl PredictedContact {
         self.weights.iter().sum::<f32>().abs() > 0.5
     }
 
+    /// Whether parts of cloth that come away from each other by `out` (m) within `h` seconds don't touch any more.
+    pub(super) fn is_parting(&self, out: f32, h: f32) -> bool {
+        out > if self.load > 0.0 { PARTING * h } else { 0.0 }
+    }
+
     /// The particles and their weights.
     fn parts(&self) -> impl Iterator<Item = (usize, f32)> {
         let parts = self.particles.into_iter().zip(self.weights).take(self.count.into());
@@ -312,10 +317,10 @@ impl PredictedContact {
 }
 
 impl ContactTangent {
-    /// That of a contact with an effective `inverse_mass` (1/kg), where a substep of `h` seconds begins with a `slide`, m.
-    pub fn new(contact: PredictedContact, number: u32, inverse_mass: f32, slide: f32, h: f32) -> Self {
+    /// That of a contact where a substep of `h` seconds begins with a `slide`, m.
+    pub fn new(contact: PredictedContact, number: u32, slide: f32, h: f32) -> Self {
         let across = contact.friction * contact.load * h * h / slide.max(CREEP * h);
-        Self { contact, number, along: STIFFNESS / inverse_mass, across }
+        Self { contact, number, along: STIFFNESS / contact.inverse_mass, across }
     }
 
     /// The normal force that friction of the next substep knows, N, where a correction has `moved` it (m) and a residual is `left`
@@ -339,7 +344,8 @@ impl ContactTangent {
         self.by_direction(way, [self.along, self.across])
     }
 
-    /// What the root of what the contact leaves of an inverse of the diagonal takes from a way, where one unit of force moves the contact by `compliance` (1/kg).
+    /// The change of a way `w x` that makes an inverse diagonal D⁻¹ that of D + wᵀ k w, for stiffness k, when it comes before and
+    /// after: with S = 1 + D⁻¹ wᵀ g w, g = (1/√(1 + k c) - 1)/c and the `compliance` c = w D⁻¹ wᵀ (1/kg), that is S D⁻¹ Sᵀ.
     pub(super) fn taken(&self, compliance: f32, way: Vec3A) -> Vec3A {
         let part = |stiffness: f32| ((1.0 + stiffness * compliance).sqrt().recip() - 1.0) / compliance;
         self.by_direction(way, [self.along, self.across].map(part))

@@ -6,8 +6,7 @@ use crate::{
     constraint::implicit::{
         ITERATIONS, ImplicitBuffers, ImplicitSheet, between::ContactsBetween, direction::Direction, vectors,
     },
-    layout::points::Points,
-    layout::simd::SimdLevel,
+    layout::{points::Points, simd::SimdLevel},
     particles::{gathered::GatheredParticles, lanes::Lanes},
 };
 

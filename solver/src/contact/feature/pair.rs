@@ -64,7 +64,7 @@ pub struct FeatureContact {
     pub is_solved_by_cloth: bool,
 }
 
-/// How a pair's features are to each other.
+/// How far apart a pair's features are, and where.
 #[derive(Clone, Copy, Debug)]
 pub struct Separation {
     /// Weight of each point in the way from the second feature's closest point to the first's.
@@ -213,7 +213,7 @@ impl FeatureContact {
             self.gap = farthest;
             return None;
         }
-        let Separation { weights, normal, gap, distance } = self.look(points);
+        let Separation { weights, normal, gap, distance } = self.separation(points);
         let target = distance.min(self.gap + most_parted);
         let old_gap = core::mem::replace(&mut self.gap, gap);
         self.normal = normal;
@@ -248,9 +248,9 @@ impl FeatureContact {
         self.features.is_beyond(places, self.normal, distance)
     }
 
-    /// How far apart the features are: on the side where they belong, unless they have passed through each other.
+    /// How far apart the features are, and where: on the side where they belong, unless they have passed through each other.
     #[inline]
-    pub fn look(&self, points: &FeaturePoints) -> Separation {
+    pub fn separation(&self, points: &FeaturePoints) -> Separation {
         let places = self.points.map(|i| points.position[i as usize]);
         let before = self.points.map(|i| points.previous[i as usize]);
         let ClosestPoints { weights, between } = self.features.nearest(places);

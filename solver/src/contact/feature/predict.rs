@@ -161,7 +161,7 @@ impl FeatureContact {
         if self.is_beyond(points, self.distance + self.taper.max(0.0) + free_fall.length()) {
             return None;
         }
-        let apart = self.look(points);
+        let apart = self.separation(points);
         let side = self.side(&apart, points, own.clone())?;
         let fall = apart.normal.dot(free_fall) * side.weights.iter().sum::<f32>();
         if apart.gap + fall.min(0.0) >= apart.distance {
@@ -179,7 +179,7 @@ impl FeatureContact {
         if self.is_beyond(points, self.distance + self.taper.max(0.0)) {
             return None;
         }
-        let apart = self.look(points);
+        let apart = self.separation(points);
         let [one, other] = ranges.map(|range| self.side(&apart, points, range));
         (apart.gap < apart.distance).then_some([one?, other?])
     }
