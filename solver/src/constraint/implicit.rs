@@ -24,6 +24,10 @@
 //! y is without a part of the free fall, and the right-hand side has that part of the weight instead; which it is
 //! [where the cloth is held](HELD). There, cloth at rest has a right-hand side of zero, and stays.
 //!
+//! Where something has just stopped a few particles, y - x strains the cloth around them, and is stiff. A direction has one number
+//! for all particles: along this one, the first step would stop the whole sheet. There it is the [last direction](system::ROUGH):
+//! x' - x, after the iterations have smoothed it, which serves Galerkin's condition as well.
+//!
 //! **Preconditioner.** The [matrix of one number a particle](crate::topology::two_grid), as stiff in all directions as the cloth
 //! is along its stiffest, through its coarse grid and its diagonal; and the [rigid motions](rigid) of each connected component,
 //! which that takes for strain.
