@@ -156,15 +156,13 @@ impl ImplicitContacts {
             }
             let past = contact.past(now, before);
             let out = contact.normal.dot(past);
-            let area = areas[contact.particles[0] as usize];
-            let is_tiny = free_fall.length_squared() > LARGEST_FALL * LARGEST_FALL * area;
             let is_parting = if contact.is_at_obstacle() {
                 let fall = contact.normal.dot(free_fall) * contact.weights.iter().sum::<f32>();
                 out + fall.min(0.0) >= 0.0
             } else {
                 contact.is_parting(out, h)
             };
-            if contact.inverse_mass == 0.0 || is_tiny || is_parting {
+            if contact.inverse_mass == 0.0 || contact.is_tiny(areas, free_fall) || is_parting {
                 contact.load = 0.0;
                 continue;
             }
@@ -265,6 +263,12 @@ impl PredictedContact {
     /// Whether it isn't between parts of the same cloth: the weights of such add up to nothing.
     fn is_at_obstacle(&self) -> bool {
         self.weights.iter().sum::<f32>().abs() > 0.5
+    }
+
+    /// Whether its cell, of one of the `areas` (m²), is too small for a linear step that ends such a `free_fall`, m.
+    pub fn is_tiny(&self, areas: &[f32], free_fall: Vec3A) -> bool {
+        let area = areas[self.particles[0] as usize];
+        free_fall.length_squared() > LARGEST_FALL * LARGEST_FALL * area
     }
 
     /// Whether parts of cloth that come away from each other by `out` (m) within `h` seconds don't touch any more.

@@ -74,9 +74,11 @@ impl FeatureContacts {
             if !cloth.is_implicit() || !pair.points.iter().all(|&point| own.contains(&point) || is_fixed(point)) {
                 continue;
             }
-            pair.is_solved_by_cloth = true;
             let free_fall = cloth.ctx().gravity * (h * h);
-            if let Some(contact) = pair.predict(&self.points, own, free_fall) {
+            let contact = pair.predict(&self.points, own, free_fall);
+            pair.is_solved_by_cloth =
+                contact.is_none_or(|contact| !contact.is_tiny(&cloth.topology().areas, free_fall));
+            if let Some(contact) = contact.filter(|_| pair.is_solved_by_cloth) {
                 self.predicted.push(PredictedPair { cloth: number as u32, pair: i, contact });
             }
         }
