@@ -15,7 +15,7 @@ mod meeting;
 use crate::{
     cloth::{ClothSolver, InForce},
     frame::{self, ClothRun},
-    solver::{self, Member, Particles, Scratch, StepContext, StepReport, Topology},
+    solver::{self, Member, Particles, Scratch, StepContext, StepReach, StepReport, Topology},
     state::{BodyPush, ClothReport, ClothReset, ClothState, ClothStatus, ResetCause, StepInput, Warned},
     surroundings::{ClothGravity, collider::Obstacles, wind::Winds},
 };
@@ -156,7 +156,6 @@ impl<'a> Parts<'a> {
             jump,
             ..
         } = &mut *cloth.input;
-        surroundings.obstacles.around(*origin, solver.collision_filter, *jump, near, owners);
         surroundings.winds.around(*origin, felt);
         let ctx = StepContext {
             gravity: (gravity * settings.gravity_scale).into(),
@@ -166,11 +165,13 @@ impl<'a> Parts<'a> {
             attached_pins,
             grabs,
             tethers: settings.tether_slack.map(|_| cloth.attachments.as_tethers()),
-            obstacles: near,
             winds: felt,
             pool,
             ..StepContext::new(dt, solver, material)
         };
+        let reach = || StepReach::new(particles, &ctx);
+        surroundings.obstacles.around(reach, *origin, solver.collision_filter, *jump, (near, owners));
+        let ctx = StepContext { obstacles: near, ..ctx };
         Some(Self { particles, topology, ctx, origin: *origin })
     }
 }

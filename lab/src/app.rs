@@ -107,8 +107,8 @@ pub fn building(options: &Options) -> Value {
     })
 }
 
-/// Flags on their poles, ten in a row.
-pub fn many_flags(cloths: u32, frames: u32, single_threaded: bool) -> Value {
+/// Flags on their poles, ten in a row; with `figures`, one of them stands beside each second flag, which doesn't touch it.
+pub fn many_flags(cloths: u32, figures: bool, frames: u32, single_threaded: bool) -> Value {
     let plugin = ClothPlugin::default();
     let plugin = if single_threaded { plugin.single_threaded() } else { plugin };
     let empty = frame_microseconds(&mut headless(Some(plugin)), frames);
@@ -124,16 +124,34 @@ pub fn many_flags(cloths: u32, frames: u32, single_threaded: bool) -> Value {
             Transform::from_xyz(1.5 * (i % 10) as f32, 1.5, 1.5 * (i / 10) as f32),
         ));
     }
+    if figures {
+        let beside = |i: u32| Vec3::new(1.5 * (i % 10) as f32 - 0.7, 1.5, 1.5 * (i / 10) as f32);
+        (0..cloths).step_by(2).for_each(|i| spawn_figure(app.world_mut(), beside(i)));
+    }
     app.world_mut().spawn(Wind { velocity: Vec3::new(5.0, 0.0, 1.0), gusts: 0.6, turbulence: 0.25, ..default() });
     let update = frame_microseconds(&mut app, frames);
     json!({
         "scene": "many",
         "cloths": cloths,
+        "obstacles": if figures { cloths.div_ceil(2) * LIMBS } else { 0 },
         "particles": cloths * 32 * 20,
         "threads": if single_threaded { 1 } else { bevy::tasks::available_parallelism() },
         "ms_per_update_empty": empty / 1000.0,
         "ms_per_update": update / 1000.0,
     })
+}
+
+/// Capsules of a figure.
+const LIMBS: u32 = 17;
+
+/// As many capsules as a character has limbs, around a place.
+fn spawn_figure(world: &mut World, place: Vec3) {
+    for limb in 0..LIMBS {
+        let height = (limb as f32 / (LIMBS - 1) as f32 - 0.5) * 0.8;
+        let side = (limb % 3) as f32 * 0.08;
+        let collider = ClothCollider::from(Capsule3d::new(0.05, 0.15));
+        world.spawn((collider, Transform::from_translation(place + Vec3::new(-side, height, 0.0))));
+    }
 }
 
 /// An app that steps once an update.

@@ -60,6 +60,9 @@ enum Experiment {
         /// Flags
         #[arg(long, default_value_t = 100)]
         cloths: u32,
+        /// With 17 capsules beside each second flag, which doesn't touch them
+        #[arg(long)]
+        figures: bool,
         /// Frames of 1/60 s
         #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..))]
         frames: u32,
@@ -175,7 +178,9 @@ impl Experiment {
             Self::Shares { options } => shares::of_frame(options),
             Self::App { options } => app::one_cloth(options),
             Self::Build { options } => Ok(app::building(options)),
-            Self::Many { cloths, frames, single_threaded } => Ok(app::many_flags(*cloths, *frames, *single_threaded)),
+            Self::Many { cloths, figures, frames, single_threaded } => {
+                Ok(app::many_flags(*cloths, *figures, *frames, *single_threaded))
+            }
             Self::Sizes { .. } | Self::Laboratory { .. } | Self::Chaos(_) => {
                 Err(io::Error::other("these are several measurements"))
             }

@@ -14,6 +14,7 @@ pub(crate) mod friction;
 pub(crate) mod mesh;
 pub(crate) mod particle;
 
+pub use crate::contact::broad_phase::StepReach;
 pub(crate) use crate::contact::{
     broad_phase::near_obstacles,
     particle::{predict, project},

@@ -34,6 +34,7 @@ pub mod topology;
 
 pub use crate::{
     build::{MeshError, SourceMesh, Welded, build, grab_tethers, tethers},
+    contact::StepReach,
     input::{
         AttachedPin, Body, BodyAttachment, BodyDisplacement, BodyImpulse, CollisionFilter, Grab, GrabTether, Gusts,
         MAX_TIME_STEP, Method, Obstacle, PinMotion, SelfCollision, StepContext, StepSettings, SubstepPolicy, Tether,

@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::{
     frame::{FromLatestStep, Jump, JumpDetection, PastPose, Poses},
-    solver::{Body, CollisionFilter, Obstacle, Shape, Solid},
+    solver::{Body, CollisionFilter, Obstacle, Shape, Solid, StepReach},
 };
 use error::ColliderError;
 use scale_mismatch::ScaleMismatchWarning;
@@ -179,29 +179,34 @@ impl Obstacles {
         self.list.iter().map(|(entity, layers, obstacle)| (*entity, *layers, obstacle))
     }
 
-    /// Writes the obstacles that `filter` selects into `near`, relative to `origin`, and whose they are into `owners`. For a
-    /// cloth that has made a `jump`.
+    /// Writes the obstacles that `filter` selects and a cloth may `reach` into `near`, relative to its `origin`, and whose they are
+    /// into `owners`. For a cloth that has made a `jump`.
     pub(crate) fn around(
         &self,
+        reach: impl FnOnce() -> StepReach,
         origin: Vec3,
         filter: CollisionFilter,
         jump: Option<Jump>,
-        near: &mut Vec<Obstacle>,
-        owners: &mut Vec<Entity>,
+        (near, owners): (&mut Vec<Obstacle>, &mut Vec<Entity>),
     ) {
+        near.clear();
+        owners.clear();
+        if self.list.is_empty() {
+            return;
+        }
+        let reach = reach();
         let origin = Vec3A::from(origin);
         let start = |start: Isometry3d, end| jump.map_or(start, |jump| jump.start_of(start, end));
         let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - origin, pose.rotation);
-        let selected = || self.list.iter().filter(|(_, layers, _)| filter.selects(*layers));
-        near.clear();
-        near.extend(selected().map(|(_, _, obstacle)| Obstacle {
-            start: relative(start(obstacle.start, &obstacle.end)),
-            end: relative(obstacle.end),
-            body: obstacle.body.map(|body| Body { centre: body.centre - origin, ..body }),
-            ..obstacle.clone()
-        }));
-        owners.clear();
-        owners.extend(selected().map(|&(entity, ..)| entity));
+        for (entity, _, obstacle) in self.list.iter().filter(|(_, layers, _)| filter.selects(*layers)) {
+            let start = relative(start(obstacle.start, &obstacle.end));
+            let end = relative(obstacle.end);
+            if reach.includes(&obstacle.shape, [&start, &end], obstacle.rounding) {
+                let body = obstacle.body.map(|body| Body { centre: body.centre - origin, ..body });
+                near.push(Obstacle { start, end, body, ..obstacle.clone() });
+                owners.push(*entity);
+            }
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use crate::{
         body::Bodies,
         particle::{CandidateRanges, ccd},
     },
-    input::{BodyDisplacement, Obstacle, StepContext},
+    input::{BodyDisplacement, MAX_TIME_STEP, Obstacle, StepContext},
     layout::{
         points::Block,
         simd::{SimdLevel, Vec3x8, lane},
@@ -90,33 +90,58 @@ impl BoundingSphere {
     }
 }
 
-/// Obstacles that are so near that the cloth may touch them within a step of `dt` seconds.
+/// The region that a cloth may reach within a step: what is outside of it can't touch the cloth.
+#[derive(Clone, Copy, Debug)]
+pub struct StepReach {
+    /// Corners of the box around the particles, pins and hands, m.
+    low: Vec3A,
+    high: Vec3A,
+    /// How far beyond it something may be touched, m.
+    distance: f32,
+}
+
+impl StepReach {
+    /// The reach of a step. What `ctx` has of obstacles doesn't matter.
+    pub fn new(particles: &Particles, ctx: &StepContext) -> Self {
+        let ends = ctx.pin_motions.iter().map(|anchor| anchor.end).chain(ctx.grabs.iter().map(|grab| grab.end));
+        let places = particles.position.iter().copied().chain(ends);
+        let (low, high) =
+            places.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let fastest = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
+        // A step ahead, and once more for what it gains in speed.
+        let distance = ctx.contact_distance() + 2.0 * fastest * ctx.dt.min(MAX_TIME_STEP) + GAINED;
+        Self { low, high, distance }
+    }
+
+    /// Whether an obstacle that is rounded by so much (m) may be touched on its way from one pose to the other.
+    pub fn includes(&self, shape: &Shape, [start, end]: [&Isometry3d; 2], rounding: f32) -> bool {
+        let Self { low, high, distance } = *self;
+        let way = start.translation.distance(end.translation) + rounding;
+        let radius = shape.reach();
+        if !radius.is_finite() {
+            let Shape::Solid(solid) = shape else { return true };
+            let cloth = BoundingSphere::around(low, high);
+            let is_reached = |pose: &Isometry3d| {
+                solid.surface(pose.inverse().transform_point(cloth.centre)).distance - cloth.radius <= distance + way
+            };
+            // What turns sweeps over more than it covers at both ends.
+            return start.rotation != end.rotation || is_reached(start) || is_reached(end);
+        }
+        start.translation.distance(start.translation.clamp(low, high)) - radius <= distance + way
+    }
+}
+
+/// Obstacles that are so near that the cloth may touch them within a step.
 pub(crate) fn near_obstacles<'a>(
     particles: &Particles,
     ctx: &StepContext<'a>,
-    dt: f32,
 ) -> impl Iterator<Item = &'a Obstacle> + Clone {
-    let ends = ctx.pin_motions.iter().map(|anchor| anchor.end).chain(ctx.grabs.iter().map(|grab| grab.end));
-    let places = particles.position.iter().copied().chain(ends).filter(|_| !ctx.obstacles.is_empty());
-    let (low, high) = places.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-    let fastest = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();
-    let cloth = BoundingSphere::around(low, high);
-    // A step ahead, and once more for what it gains in speed.
-    let reach = ctx.contact_distance() + 2.0 * fastest * dt + GAINED;
-    ctx.obstacles.iter().filter(move |obstacle| {
-        let way = obstacle.start.translation.distance(obstacle.end.translation) + obstacle.rounding;
-        let Some((place, radius)) = obstacle.ball() else {
-            let Shape::Solid(solid) = obstacle.shape else { return true };
-            let is_reached = |pose: &Isometry3d| {
-                solid.surface(pose.inverse().transform_point(cloth.centre)).distance - cloth.radius <= reach + way
-            };
-            // What turns sweeps over more than it covers at both ends.
-            return obstacle.start.rotation != obstacle.end.rotation
-                || is_reached(&obstacle.start)
-                || is_reached(&obstacle.end);
-        };
-        place.distance(place.clamp(low, high)) - radius <= reach + way
-    })
+    let reach = (!ctx.obstacles.is_empty()).then(|| StepReach::new(particles, ctx));
+    let includes = move |obstacle: &&Obstacle| {
+        let Obstacle { shape, start, end, rounding, .. } = obstacle;
+        reach.is_some_and(|reach| reach.includes(shape, [start, end], *rounding))
+    };
+    ctx.obstacles.iter().filter(includes)
 }
 
 impl Obstacle {

@@ -37,7 +37,7 @@ impl<'a> Plan<'a> {
         if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
             return None;
         }
-        let mut near = contact::near_obstacles(particles, ctx, dt).peekable();
+        let mut near = contact::near_obstacles(particles, ctx).peekable();
         let is_near = near.peek().is_some();
         // Nothing else asks for it: a cloth that nothing is near needs no surface.
         let longest_edge = if is_near { feature::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };

@@ -6,8 +6,8 @@ use bevy_math::Vec3A;
 use bevy_tasks::TaskPool;
 use drape_solver::{
     AttachedPin, BodyAttachment, Grab, Material, Member, Method, Obstacle, Particles, PinMotion, Scratch,
-    SelfCollision, SourceMesh, StepContext, StepReport, StepSettings, SubstepPolicy, Tethers, Topology, WindSource,
-    build, step,
+    SelfCollision, SourceMesh, StepContext, StepReach, StepReport, StepSettings, SubstepPolicy, Tethers, Topology,
+    WindSource, build, step,
 };
 
 use crate::fixtures::mesh::{Grid, topology};
@@ -132,6 +132,12 @@ impl Bed {
     pub fn step(&mut self, dt: f32) -> StepReport {
         let (particles, topology, ctx, scratch) = self.parts(dt);
         step(particles, topology, &ctx, scratch)
+    }
+
+    /// What a step of `dt` seconds may reach.
+    pub fn reach(&mut self, dt: f32) -> StepReach {
+        let (particles, _, ctx, _) = self.parts(dt);
+        StepReach::new(particles, &ctx)
     }
 
     /// What goes into a step of `dt` seconds, for which the winds move on.

@@ -10,7 +10,7 @@ use drape_solver::{Ellipsoid, Material, MeshShape, Method, Obstacle, Shape, Soli
 use proptest::{prelude::*, test_runner::RngSeed};
 
 use crate::{
-    bench_bed::{Bed, STABLE},
+    bench_bed::{Bed, STABLE, bits},
     fixtures::material::{Springs, springs},
     meshes::{ball, cuboid},
 };
@@ -204,6 +204,32 @@ fn assert_outside(sheet: Sheet, fliers: &[Flier], depth: f32) -> Result<(), Test
     Ok(())
 }
 
+/// Steps a cloth between `fliers`, and each time as well between those only that are beyond its reach: as if there were none.
+fn assert_untouched(sheet: Sheet, fliers: &[Flier]) -> Result<(), TestCaseError> {
+    let shapes: Vec<Shape> = fliers.iter().map(|flier| flier.form.shape()).collect();
+    let mut bed = sheet.bed();
+    for frame in 0..FRAMES {
+        let all = shapes.iter().zip(fliers);
+        let obstacles =
+            all.map(|(shape, flier)| Obstacle::moving(shape.clone(), flier.pose(frame), flier.pose(frame + 1)));
+        bed.obstacles = obstacles.collect();
+        let reach = bed.reach(FRAME);
+        let is_beyond = |it: &Obstacle| !reach.includes(&it.shape, [&it.start, &it.end], it.rounding);
+        let mut beyond = bed.clone();
+        beyond.obstacles.retain(is_beyond);
+        let mut alone = Bed { obstacles: Vec::new(), ..bed.clone() };
+        beyond.step(FRAME);
+        alone.step(FRAME);
+        prop_assert_eq!(bits(&beyond.particles), bits(&alone.particles), "frame {}", frame);
+        let places = || beyond.particles.position.iter();
+        let nearest = |it: &Obstacle| places().map(|&place| distance(it, place)).fold(f32::INFINITY, f32::min);
+        let nearest = beyond.obstacles.iter().map(nearest).fold(f32::INFINITY, f32::min);
+        prop_assert!(nearest > 0.0, "frame {}: {} m", frame, nearest);
+        bed.step(FRAME);
+    }
+    Ok(())
+}
+
 /// Steps a cloth between `fliers`, wherever they are.
 fn assert_finite(sheet: Sheet, fliers: &[Flier]) -> Result<(), TestCaseError> {
     let shapes: Vec<Shape> = fliers.iter().map(|flier| flier.form.shape()).collect();
@@ -242,6 +268,14 @@ proptest! {
         fliers in prop::collection::vec(flier(prop_oneof![solid(), mesh()], 30.0), 1..5),
     ) {
         assert_finite(sheet, &fliers)?;
+    }
+
+    #[test]
+    fn what_is_beyond_the_reach_of_a_step_changes_nothing(
+        sheet in sheet(),
+        fliers in prop::collection::vec(flier(prop_oneof![solid(), mesh()], 30.0), 1..5),
+    ) {
+        assert_untouched(sheet, &fliers)?;
     }
 
     #[test]
