@@ -48,7 +48,7 @@ pub use crate::{
         contact_load::{ContactLoad, FeatureLoad},
     },
     scratch::Scratch,
-    shape::{Ellipsoid, MeshShape, Shape, Solid, TaperedCapsule, TriangleMesh},
+    shape::{DeformedPoints, Ellipsoid, MeshShape, Shape, Solid, TaperedCapsule, TriangleMesh},
     step::{
         Member,
         report::{StepReport, SubstepReason},

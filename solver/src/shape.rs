@@ -5,7 +5,7 @@ pub(crate) mod sharp_features;
 pub mod solid;
 
 pub use crate::shape::{
-    mesh::{MeshShape, TriangleMesh},
+    mesh::{DeformedPoints, MeshShape, TriangleMesh},
     solid::{Ellipsoid, Solid, TaperedCapsule},
 };
 

@@ -52,7 +52,7 @@ fn spawn_limb(app: &mut App, root: Transform, collider: ClothCollider) -> Limb {
 fn places(app: &App, entity: Entity) -> [Vec<Vec3>; 2] {
     let obstacle = obstacle(app, entity).expect("it is an obstacle");
     let Shape::Mesh(shape) = &obstacle.shape else { panic!("it has triangles") };
-    let [start, end] = shape.deformed.as_ref().expect("it is skinned");
+    let [start, end] = shape.deformed.as_ref().expect("it is skinned").ends();
     [(obstacle.start, start), (obstacle.end, end)]
         .map(|(pose, points)| points.iter().map(|&point| (pose * point).into()).collect())
 }
@@ -133,7 +133,7 @@ fn far_away_points_stay_as_exact_as_near() {
     get_mut::<Transform>(&mut app, limb.joints[1]).rotation = Quat::from_rotation_z(FRAC_PI_2);
     run(&mut app, 1);
     let Shape::Mesh(shape) = &obstacle(&app, limb.entity).unwrap().shape else { panic!("it has triangles") };
-    let [_, end] = shape.deformed.as_ref().unwrap();
+    let [_, end] = shape.deformed.as_ref().unwrap().ends();
     let turned = |&point: &Vec3A| if point.y > 0.0 { Vec3A::new(-point.y, point.x, point.z) } else { point };
     for (found, expected) in end.iter().zip(mesh(&app, limb.entity).points.iter().map(turned)) {
         assert!(found.abs_diff_eq(expected, 1e-6), "{found} and {expected}");
@@ -188,7 +188,7 @@ fn points_are_written_to_the_same_places_again() {
     // It holds on to what it meets.
     spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 4, 4), ());
     let latest = |app: &App| match &obstacle(app, limb.entity).unwrap().shape {
-        Shape::Mesh(shape) => shape.deformed.as_ref().unwrap()[1].as_ptr(),
+        Shape::Mesh(shape) => shape.deformed.as_ref().unwrap().ends()[1].as_ptr(),
         Shape::Solid(_) => panic!("it has triangles"),
     };
     run(&mut app, 5);

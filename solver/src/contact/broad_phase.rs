@@ -162,7 +162,7 @@ impl Shape {
                 let [low, high] = mesh.bounds();
                 low.abs().max(high.abs()).length()
             }
-            Self::Mesh(_) => f32::INFINITY,
+            Self::Mesh(MeshShape { deformed: Some(points), .. }) => points.reach,
         }
     }
 

@@ -28,7 +28,7 @@ use crate::{
         simd::{LANES, Lane, Vec3x8, lane},
     },
     particles::lanes::Run,
-    shape::{MeshShape, TriangleMesh, solid::field::SignedDistance},
+    shape::{DeformedPoints, MeshShape, TriangleMesh, solid::field::SignedDistance},
 };
 
 pub(crate) mod candidates;
@@ -135,7 +135,7 @@ impl MeshContacts {
         let Self { blocks, then, now, places, .. } = self;
         let (points, places) = match deformed {
             None => ([&*mesh.points; 2], &mesh.places),
-            Some([from, to]) => {
+            Some(DeformedPoints { ends: [from, to], .. }) => {
                 if is_new {
                     candidates::follow(places, &mesh.surface, from, to);
                 }

@@ -29,9 +29,31 @@ pub struct TriangleMesh {
 pub struct MeshShape {
     /// The mesh.
     pub mesh: Arc<TriangleMesh>,
-    /// Its points at the start and at the end of the step, where they move within the obstacle's frame: of a skinned
-    /// mesh.
-    pub deformed: Option<[Arc<[Vec3A]>; 2]>,
+    /// Where its points are instead if they move within the obstacle's frame: of a skinned mesh.
+    pub deformed: Option<DeformedPoints>,
+}
+
+/// Points of a mesh that move within the obstacle's frame during a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeformedPoints {
+    /// At the start and at the end of the step, m.
+    pub(crate) ends: [Arc<[Vec3A]>; 2],
+    /// Radius of a ball around the frame's origin that holds all of them, m.
+    pub(crate) reach: f32,
+}
+
+impl DeformedPoints {
+    /// As many points as the mesh has, at the start and at the end of the step, m.
+    pub fn new(ends: [Arc<[Vec3A]>; 2]) -> Self {
+        let squares = ends.iter().flat_map(|points| points.iter()).map(|point| point.length_squared());
+        let reach = squares.fold(0.0, f32::max).sqrt();
+        Self { ends, reach }
+    }
+
+    /// The points at the start and at the end of the step, m.
+    pub fn ends(&self) -> &[Arc<[Vec3A]>; 2] {
+        &self.ends
+    }
 }
 
 impl TriangleMesh {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bevy_math::{Isometry3d, Quat, Vec3, Vec3A};
-use drape_solver::{Material, MeshShape, Method, Obstacle, Shape, SourceMesh, TriangleMesh};
+use drape_solver::{DeformedPoints, Material, MeshShape, Method, Obstacle, Shape, SourceMesh, TriangleMesh};
 
 use crate::{
     bench_bed::{Bed, STABLE},
@@ -220,7 +220,7 @@ fn a_mesh_that_changes_its_shape_carries_the_cloth() {
     };
     for frame in 0..60 {
         let ends = [frame, frame + 1].map(|frame| grown(frame as f32 / 60.0));
-        let shape = MeshShape { mesh: mesh.clone(), deformed: Some(ends) };
+        let shape = MeshShape { mesh: mesh.clone(), deformed: Some(DeformedPoints::new(ends)) };
         bed.obstacles = vec![Obstacle::still(Shape::Mesh(shape), Isometry3d::IDENTITY)];
         bed.step(1.0 / 60.0);
     }

@@ -1,10 +1,14 @@
 //! A report says why a step took as many substeps as it did.
 
+use std::sync::Arc;
+
 use bevy_math::{
-    Isometry3d, Vec3,
+    Isometry3d, Vec3, Vec3A,
     primitives::{Cone, Cuboid, Sphere},
 };
-use drape_solver::{Method, Obstacle, SelfCollision, Solid, SubstepReason, step_together};
+use drape_solver::{
+    DeformedPoints, MeshShape, Method, Obstacle, SelfCollision, Shape, Solid, SubstepReason, step_together,
+};
 
 use crate::{
     bench_bed::{Bed, together},
@@ -13,6 +17,7 @@ use crate::{
         material::{Springs, springs},
         mesh::icosphere,
     },
+    meshes::ball,
 };
 
 const STEP: f32 = 1.0 / 60.0;
@@ -54,11 +59,25 @@ fn what_raises_the_number_is_the_reason() {
 }
 
 #[test]
+fn a_mesh_that_changes_its_shape_counts_only_where_it_is_near() {
+    let mesh = Arc::new(ball(0.3, 2));
+    let moved = |way: Vec3A| -> Arc<[Vec3A]> { mesh.points.iter().map(|point| *point + way).collect() };
+    // Its frame stays where it is, as with a character whose limbs move: far below the cloth, or up to it.
+    for (up, reason) in [(0.0, SubstepReason::Strain), (2.0, SubstepReason::Obstacle)] {
+        let ends = [Vec3A::ZERO, Vec3A::Y * up].map(moved);
+        let shape = MeshShape { mesh: mesh.clone(), deformed: Some(DeformedPoints::new(ends)) };
+        let below = Isometry3d::from_translation(Vec3::NEG_Y * 2.3);
+        let bed = Bed { obstacles: vec![Obstacle::still(Shape::Mesh(shape), below)], ..hung() };
+        assert_eq!(reason_of(bed), reason, "{up}");
+    }
+}
+
+#[test]
 fn a_closed_mesh_and_a_step_without_time_have_their_reasons() {
-    let mut ball = Bed::new(icosphere(0.2, 4), springs(Springs::default())).like_a_game(Method::Strands);
+    let mut closed = Bed::new(icosphere(0.2, 4), springs(Springs::default())).like_a_game(Method::Strands);
     // Its triangles ask for as many by themselves.
-    assert_eq!(ball.step(STEP).reason, SubstepReason::Strain);
-    assert_eq!(ball.step(0.0).reason, SubstepReason::Nothing);
+    assert_eq!(closed.step(STEP).reason, SubstepReason::Strain);
+    assert_eq!(closed.step(0.0).reason, SubstepReason::Nothing);
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub(super) fn draw_colliders(lines: &mut Lines, obstacles: &Obstacles, wires: &m
         match shape {
             Shape::Solid(solid) => draw_solid(lines, *solid, *end),
             Shape::Mesh(MeshShape { mesh, deformed }) => {
-                let points = deformed.as_ref().map_or(mesh.points.as_slice(), |[_, points]| points);
+                let points = deformed.as_ref().map_or(mesh.points.as_slice(), |points| &points.ends()[1]);
                 for ends in wires.of(mesh) {
                     let [from, to] = ends.map(|i| Vec3::from(*end * points[i as usize]));
                     lines.line(from, to, palette::COLLIDER);

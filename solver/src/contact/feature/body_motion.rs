@@ -14,7 +14,7 @@ use crate::{
         },
         particle::ccd,
     },
-    shape::{MeshShape, Shape},
+    shape::{DeformedPoints, MeshShape, Shape},
 };
 
 /// The way that a search has taken a body to be on.
@@ -78,7 +78,9 @@ impl FeatureContacts {
         match &cloth.ctx().obstacles[fixed.obstacle as usize].shape {
             Shape::Solid(_) => self.at_obstacle.outline(fixed).points[point],
             Shape::Mesh(MeshShape { mesh, deformed: None }) => mesh.points[point],
-            Shape::Mesh(MeshShape { deformed: Some([from, to]), .. }) => from[point].lerp(to[point], t),
+            Shape::Mesh(MeshShape { deformed: Some(DeformedPoints { ends: [from, to], .. }), .. }) => {
+                from[point].lerp(to[point], t)
+            }
         }
     }
 

@@ -8,7 +8,7 @@ use crate::{
     contact::feature::narrow_phase::Displacements,
     geometry::bvh::{TriangleBvh, bounds::BvhBounds},
     input::Obstacle,
-    shape::{MeshShape, Shape, sharp_features::SharpFeatures},
+    shape::{DeformedPoints, MeshShape, Shape, sharp_features::SharpFeatures},
 };
 
 /// A mesh whose points move within its frame.
@@ -65,7 +65,7 @@ impl<'a> ObstacleGeometry<'a> {
             Shape::Mesh(MeshShape { mesh, deformed: None }) => {
                 of_mesh(&mesh.points, &mesh.surface, &mesh.places, mesh.is_closed, None)
             }
-            Shape::Mesh(MeshShape { mesh, deformed: Some([from, to]) }) => {
+            Shape::Mesh(MeshShape { mesh, deformed: Some(DeformedPoints { ends: [from, to], .. }) }) => {
                 deformed.follow(&mesh.surface, from, to, span);
                 let DeformedMesh { points, way, places } = deformed;
                 of_mesh(points, &mesh.surface, places, mesh.is_closed, Some(way))

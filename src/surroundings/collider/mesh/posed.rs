@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy::math::{Affine3A, Vec3A};
 
 use super::skin::Skin;
-use crate::surroundings::collider::error::ColliderError;
+use crate::{solver::DeformedPoints, surroundings::collider::error::ColliderError};
 
 /// The points of the latest steps, the latest first.
 ///
@@ -22,12 +22,7 @@ impl Posed {
 
     /// The points at the start and the end of the coming step, with what the joints do at its end. A collider that
     /// `is_new` has been there all the time.
-    pub fn follow(
-        &mut self,
-        skin: &Skin,
-        joints: &[Affine3A],
-        is_new: bool,
-    ) -> Result<[Arc<[Vec3A]>; 2], ColliderError> {
+    pub fn follow(&mut self, skin: &Skin, joints: &[Affine3A], is_new: bool) -> Result<DeformedPoints, ColliderError> {
         let fits = |points: &Arc<[Vec3A]>| points.len() == skin.len();
         let [latest, before, oldest] = core::mem::take(&mut self.0);
         let mut end = oldest.filter(fits).unwrap_or_default();
@@ -44,6 +39,6 @@ impl Posed {
         }
         let start = latest.as_ref().filter(|points| fits(points) && !is_new).unwrap_or(&end).clone();
         self.0 = [Some(end.clone()), latest, before];
-        Ok([start, end])
+        Ok(DeformedPoints::new([start, end]))
     }
 }
