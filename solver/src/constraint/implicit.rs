@@ -24,9 +24,10 @@
 //! y is without a part of the free fall, and the right-hand side has that part of the weight instead; which it is
 //! [where the cloth is held](HELD). There, cloth at rest has a right-hand side of zero, and stays.
 //!
-//! Where something has just stopped a few particles, y - x strains the cloth around them, and is stiff. A direction has one number
-//! for all particles: along this one, the first step would stop the whole sheet. There it is the [last direction](system::ROUGH):
-//! x' - x, after the iterations have smoothed it, which serves Galerkin's condition as well.
+//! Where touches have just stopped a few particles, y - x strains the cloth around them, and is stiff. A direction has one number
+//! for all particles: along this one, the first step would stop the whole sheet. So where cloth meets cloth, which touches in many
+//! places, it is the [last direction](system::ROUGH) instead: x' - x, after the iterations have smoothed it, which serves Galerkin's
+//! condition as well. On obstacles alone the sheet is calmer if it is the first.
 //!
 //! **Preconditioner.** The [matrix of one number a particle](crate::topology::two_grid), as stiff in all directions as the cloth
 //! is along its stiffest, through its coarse grid and its diagonal; and the [rigid motions](rigid) of each connected component,
@@ -47,7 +48,7 @@ use crate::{
             element8::{BendFrames, frames_of_pack, multiply_pack, pull_pack},
         },
     },
-    input::{AttachedPin, Method, StepContext},
+    input::{AttachedPin, Method, SelfCollision, StepContext},
     layout::points::Points,
     linear::sparse_rows::SparseRows,
     material::Moduli,
@@ -87,6 +88,8 @@ pub(crate) struct ImplicitSheet<'a> {
     bend: Option<BendLaw>,
     /// Duration of a substep, s.
     h: f32,
+    /// Whether it may touch itself or other cloth.
+    meets_cloth: bool,
     /// Longest way that the cloth takes a particle in a substep, m: where numbers end, so does the cloth's motion.
     farthest: f32,
 }
@@ -153,6 +156,7 @@ impl<'a> ImplicitSheet<'a> {
             laws: DirectionModuli::both(moduli, h),
             bend: BendLaw::new(topology, &ctx.material, h),
             h,
+            meets_cloth: ctx.settings.self_collision != SelfCollision::Off,
             farthest: FARTHEST * ctx.settings.max_velocity * h,
         })
     }
