@@ -244,7 +244,7 @@ impl<'a> ImplicitSheet<'a> {
         preconditioner.rigid.hold(self.two_grid, now, held, face::coupling(self.laws[0]), contacts.resistances(now));
     }
 
-    /// Begins the search with the residual, and the inertia as the first direction.
+    /// Begins the search: with the residual, and the inertia without what has to be undone of the fall.
     fn begin_search(&self, level: Level, force: Option<&Points>, is_touching: bool, buffers: &mut ImplicitBuffers) {
         let ImplicitBuffers { masses, preconditioner, fall, inertia, residual, gradient, correction, contacts, .. } =
             buffers;

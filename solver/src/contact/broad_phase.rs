@@ -146,7 +146,7 @@ pub(crate) fn near_obstacles<'a>(
 
 impl Obstacle {
     /// Centre and radius of a ball around it at the start of the step, m, that holds it as well however it turns. None where
-    /// there is none, or nobody knows.
+    /// there is none.
     pub(crate) fn ball(&self) -> Option<(Vec3A, f32)> {
         let radius = self.shape.reach();
         radius.is_finite().then_some((self.start.translation, radius))
@@ -154,7 +154,7 @@ impl Obstacle {
 }
 
 impl Shape {
-    /// Radius of a ball around the origin that holds all of it, m. Infinite where there is none, or nobody knows.
+    /// Radius of a ball around the origin that holds all of it, m. Infinite where there is none.
     fn reach(&self) -> f32 {
         match self {
             Self::Solid(solid) => solid.reach(),

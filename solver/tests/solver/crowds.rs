@@ -1,5 +1,6 @@
 //! Any obstacles, of any shape, at any place, at speeds up to 30 m/s, and several at once.
 
+use core::ops::Range;
 use std::sync::Arc;
 
 use bevy_math::{
@@ -176,23 +177,26 @@ fn are_close(fliers: &[Flier], frame: u32, gap: f32) -> bool {
     })
 }
 
+/// Fliers of these shapes, on their way from one frame to another.
+fn obstacles(shapes: &[Shape], fliers: &[Flier], frames: Range<u32>) -> Vec<Obstacle> {
+    let all = shapes.iter().zip(fliers);
+    all.map(|(shape, flier)| Obstacle::moving(shape.clone(), flier.pose(frames.start), flier.pose(frames.end)))
+        .collect()
+}
+
 /// Looks at a cloth after each step between `fliers`, as long as they are apart from each other. No particle is deeper in
 /// one than `depth`, as a share of the thickness, but for those that started inside.
 fn assert_outside(sheet: Sheet, fliers: &[Flier], depth: f32) -> Result<(), TestCaseError> {
     let shapes: Vec<Shape> = fliers.iter().map(|flier| flier.form.shape()).collect();
     let (thickness, mut bed) = (sheet.thickness, sheet.bed());
-    let obstacles = |from: u32, to: u32| -> Vec<Obstacle> {
-        let all = shapes.iter().zip(fliers);
-        all.map(|(shape, flier)| Obstacle::moving(shape.clone(), flier.pose(from), flier.pose(to))).collect()
-    };
-    let still = obstacles(0, 0);
+    let still = obstacles(&shapes, fliers, 0..0);
     let is_in = |place: &Vec3A| still.iter().any(|obstacle| distance(obstacle, *place) < thickness);
     let started_in: Vec<bool> = bed.particles.position.iter().map(is_in).collect();
     for frame in 0..FRAMES {
         if are_close(fliers, frame, 2.0 * thickness) {
             break;
         }
-        bed.obstacles = obstacles(frame, frame + 1);
+        bed.obstacles = obstacles(&shapes, fliers, frame..frame + 1);
         bed.step(FRAME);
         prop_assert!(bed.particles.is_finite(), "frame {frame}");
         for (i, &place) in bed.particles.position.iter().enumerate() {
@@ -209,10 +213,7 @@ fn assert_untouched(sheet: Sheet, fliers: &[Flier]) -> Result<(), TestCaseError>
     let shapes: Vec<Shape> = fliers.iter().map(|flier| flier.form.shape()).collect();
     let mut bed = sheet.bed();
     for frame in 0..FRAMES {
-        let all = shapes.iter().zip(fliers);
-        let obstacles =
-            all.map(|(shape, flier)| Obstacle::moving(shape.clone(), flier.pose(frame), flier.pose(frame + 1)));
-        bed.obstacles = obstacles.collect();
+        bed.obstacles = obstacles(&shapes, fliers, frame..frame + 1);
         let reach = bed.reach(FRAME);
         let is_beyond = |it: &Obstacle| !reach.includes(&it.shape, [&it.start, &it.end], it.rounding);
         let mut beyond = bed.clone();
@@ -235,10 +236,7 @@ fn assert_finite(sheet: Sheet, fliers: &[Flier]) -> Result<(), TestCaseError> {
     let shapes: Vec<Shape> = fliers.iter().map(|flier| flier.form.shape()).collect();
     let mut bed = sheet.bed();
     for frame in 0..FRAMES {
-        let all = shapes.iter().zip(fliers);
-        let obstacles =
-            all.map(|(shape, flier)| Obstacle::moving(shape.clone(), flier.pose(frame), flier.pose(frame + 1)));
-        bed.obstacles = obstacles.collect();
+        bed.obstacles = obstacles(&shapes, fliers, frame..frame + 1);
         bed.step(FRAME);
         prop_assert!(bed.particles.is_finite(), "frame {frame}");
     }

@@ -78,7 +78,7 @@ impl FeatureContacts {
             let contact = pair.predict(&self.points, own, free_fall);
             pair.is_solved_by_cloth =
                 contact.is_none_or(|contact| !contact.is_tiny(&cloth.topology().areas, free_fall));
-            if let Some(contact) = contact.filter(|_| pair.is_solved_by_cloth) {
+            if let Some(contact) = contact {
                 self.predicted.push(PredictedPair { cloth: number as u32, pair: i, contact });
             }
         }
