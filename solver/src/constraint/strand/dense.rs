@@ -45,6 +45,11 @@ impl Strand {
         if self.rest[spring] > 0.0 { self.position[b] - self.position[a] } else { DVec3::ZERO }
     }
 
+    /// Whether a spring is longer than at rest.
+    pub fn is_too_long(&self, spring: usize) -> bool {
+        self.along(spring).length() > self.rest[spring]
+    }
+
     /// What each spring pushes its ends apart with, over its length, kg.
     pub fn pushes(&self) -> Vec<f64> {
         let springs = 0..self.rest.len();

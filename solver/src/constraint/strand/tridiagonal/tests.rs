@@ -158,11 +158,11 @@ proptest! {
         strands.solve(Given::TensionOnly(TensionOnly { spring, rest_scale }), true, closed, SimdLevel::Best);
         for (i, before) in before.into_iter().enumerate() {
             let pushes = before.pushes();
-            // What would push is left out, and that is another system.
-            if pushes.iter().all(|&push| push < 0.0) {
+            // What would push is left out, and what isn't too long to begin with: that is another system.
+            let all_pull = pushes.iter().all(|&push| push < 0.0);
+            if all_pull && (0..pushes.len()).all(|j| before.is_too_long(j)) {
                 let off = error(&strands.strand(i, closed, spring).position, &before.pushed(&pushes), &before);
-                // Strands stretched a hundredfold lose more digits than others: 7e-3 was seen.
-                prop_assert!(off < 2e-2, "strand {i}: {off}");
+                prop_assert!(off < 5e-3, "strand {i}: {off}");
             }
         }
     }
