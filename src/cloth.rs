@@ -9,7 +9,8 @@ use crate::{
     pins::Pins,
     solver::{LevelPass, Method, Moduli, SelfCollision, SubstepPolicy, Topology},
     state::{
-        ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, StepInput, Warned,
+        ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, Sleep, StepInput,
+        Warned,
     },
 };
 
@@ -61,7 +62,7 @@ impl From<ClothSolver> for Method {
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(Fabric, Pins, Transform)]
 #[require(ClothState, ClothAttachments, ClothGrabs, ClothReport, ClothStatus)]
-#[require(InForce, PendingBuild, Requests, StepInput, Warned)]
+#[require(InForce, PendingBuild, Requests, Sleep, StepInput, Warned)]
 pub struct Cloth {
     /// Time integrator and constraint solver, [`ClothSolver::Strands`] by default.
     pub solver: ClothSolver,

@@ -95,7 +95,7 @@ fn put(mut entity: EntityWorldMut, transform: Transform, along: Along) {
 
 /// Leaves out the groups that don't fit a running cloth's mesh: kept, they would keep later ones from being read.
 fn without_refused(mut pins: Pins, entity: &EntityWorldMut) -> Pins {
-    let is_running = entity.get::<ClothStatus>() == Some(&ClothStatus::Ready);
+    let is_running = entity.get::<ClothStatus>().is_some_and(ClothStatus::is_running);
     let meshes = entity.world().get_resource::<Assets<Mesh>>().filter(|_| is_running);
     let source = entity.get::<ClothMesh>().zip(meshes).and_then(|(own, meshes)| meshes.get(&own.source));
     let (Some(state), Some(mesh)) = (entity.get::<ClothState>(), source) else { return pins };

@@ -225,6 +225,11 @@
 //! Besides [`ClothReady`](prelude::ClothReady) there are [`ClothFailed`](prelude::ClothFailed) and
 //! [`ClothReset`](prelude::ClothReset).
 //!
+//! Cloth that has come to rest falls [asleep](prelude::ClothStatus::Asleep), which
+//! [`ClothFellAsleep`](prelude::ClothFellAsleep) tells, and wakes by itself when something changes near it
+//! ([`ClothWokeUp`](prelude::ClothWokeUp)). [`ClothStatus::is_running`](prelude::ClothStatus::is_running) is true of both;
+//! [`ClothSleepingDisabled`](prelude::ClothSleepingDisabled) forbids it.
+//!
 //! # Determinism
 //!
 //! The same input gives the same bits: on one thread or several, whatever instructions the processor has, and whatever
@@ -367,8 +372,9 @@ pub mod prelude {
         schedule::{ClothPlugin, ClothSystems},
         solver::{Ellipsoid, LevelPass, MeshError, SelfCollision, Solid, TaperedCapsule},
         state::{
-            ClothAttachments, ClothFailed, ClothGrabbed, ClothGrabs, ClothGrip, ClothPoint, ClothReady, ClothReleased,
-            ClothReport, ClothReset, ClothState, ClothStatus, GrabId, ResetCause,
+            ClothAttachments, ClothFailed, ClothFellAsleep, ClothGrabbed, ClothGrabs, ClothGrip, ClothPoint,
+            ClothReady, ClothReleased, ClothReport, ClothReset, ClothSleepingDisabled, ClothState, ClothStatus,
+            ClothWokeUp, GrabId, ResetCause,
         },
         surroundings::{
             ClothGravity,

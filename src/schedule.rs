@@ -91,6 +91,7 @@ impl Plugin for ClothPlugin {
         fabric::loader::register(app);
         app.init_resource::<surroundings::ClothGravity>()
             .init_resource::<collider::Obstacles>()
+            .init_resource::<collider::changes::ObstacleChanges>()
             .init_resource::<wind::Winds>()
             .init_resource::<build::plan::PlanCache>()
             .init_resource::<frame::StepNumber>()
@@ -141,7 +142,7 @@ impl Plugin for ClothPlugin {
                     )
                         .chain()
                         .in_set(ClothSystems::Gather),
-                    simulate::step_cloths.in_set(ClothSystems::Simulate),
+                    (collider::changes::find_changes, simulate::step_cloths).chain().in_set(ClothSystems::Simulate),
                     simulate::report_steps.in_set(ClothSystems::Finalize),
                 ),
             )

@@ -11,13 +11,21 @@ use bevy::{
 };
 
 mod meeting;
+mod sleep;
 
 use crate::{
     cloth::{ClothSolver, InForce},
     frame::{self, ClothRun},
     solver::{self, Member, Particles, Scratch, StepContext, StepReach, StepReport, Topology},
-    state::{BodyPush, ClothReport, ClothReset, ClothState, ClothStatus, ResetCause, StepInput, Warned},
-    surroundings::{ClothGravity, collider::Obstacles, wind::Winds},
+    state::{
+        BodyPush, ClothFellAsleep, ClothReport, ClothReset, ClothState, ClothStatus, ClothWokeUp, ResetCause, Sleep,
+        StepInput, Warned,
+    },
+    surroundings::{
+        ClothGravity,
+        collider::{Obstacles, changes::ObstacleChanges},
+        wind::Winds,
+    },
 };
 use meeting::Stepped;
 
@@ -41,13 +49,14 @@ impl ScratchPool {
 pub(crate) struct Surroundings<'w> {
     gravity: Res<'w, ClothGravity>,
     obstacles: Res<'w, Obstacles>,
+    obstacle_changes: Res<'w, ObstacleChanges>,
     winds: Res<'w, Winds>,
 }
 
 /// Steps all cloths, several at a time: each reads what is shared and writes only itself, so the order doesn't matter. Those
 /// that may touch each other are stepped together.
 pub(crate) fn step_cloths(
-    mut cloths: Query<(&ClothStatus, Stepped)>,
+    mut cloths: Query<Stepped>,
     run: Res<ClothRun>,
     time: Res<Time>,
     surroundings: Surroundings,
@@ -61,11 +70,12 @@ pub(crate) fn step_cloths(
         warn_once!("ClothGravity isn't finite: cloth has no gravity until it is; set it to a finite acceleration");
         Vec3::ZERO
     };
-    let ready = cloths.iter_mut().filter(|(status, _)| **status == ClothStatus::Ready);
-    let ready: Vec<_> = ready.map(|(_, cloth)| cloth).collect();
-    let pool = frame::pool(run.parallel);
-    frame::for_each(meeting::group(ready, time.delta_secs()), run.parallel, |mut group| {
-        step_group(&mut group, time.delta_secs(), gravity, &surroundings, pool, &scratch_pool);
+    let running: Vec<_> = cloths.iter_mut().filter(|cloth| cloth.status.is_running()).collect();
+    let (dt, pool) = (time.delta_secs(), frame::pool(run.parallel));
+    let mut groups = meeting::group(running, dt);
+    groups.retain_mut(|group| dt <= 0.0 || !sleep::sleep_on(group, &surroundings));
+    frame::for_each(groups, run.parallel, |mut group| {
+        step_group(&mut group, dt, gravity, &surroundings, pool, &scratch_pool);
     });
 }
 
@@ -109,6 +119,7 @@ fn step_group(
         take_pushes(&mut cloth.input, scratch);
         end_step(&mut cloth.state, &mut cloth.report, &mut cloth.input, report);
     }
+    sleep::fall_asleep(cloths, dt, surroundings);
     scratches.into_iter().rev().for_each(|scratch| scratch_pool.give_back(scratch));
 }
 
@@ -193,12 +204,21 @@ fn end_step(state: &mut ClothState, report: &mut ClothReport, input: &mut StepIn
     }
 }
 
-/// Tells of what went wrong in a step.
+/// Tells of what went wrong in a step, and of cloth that fell asleep or woke up.
 pub(crate) fn report_steps(
     mut commands: Commands,
-    mut cloths: Query<(Entity, &ClothStatus, &ClothReport, &InForce, &mut Warned)>,
+    mut cloths: Query<(Entity, &ClothStatus, &ClothReport, &InForce, &mut Warned, &mut Sleep)>,
 ) {
-    for (entity, status, report, in_force, mut warned) in &mut cloths {
+    for (entity, status, report, in_force, mut warned, mut sleep) in &mut cloths {
+        let is_asleep = *status == ClothStatus::Asleep;
+        if is_asleep != sleep.is_told {
+            sleep.is_told = is_asleep;
+            if is_asleep {
+                commands.trigger(ClothFellAsleep { entity });
+            } else {
+                commands.trigger(ClothWokeUp { entity });
+            }
+        }
         if *status != ClothStatus::Ready {
             continue;
         }

@@ -23,6 +23,7 @@ mod point;
 mod report;
 mod requests;
 mod rest_scale;
+mod sleep;
 mod status;
 mod step_input;
 mod width;
@@ -42,6 +43,8 @@ pub(crate) use point::blend;
 pub use report::ClothReport;
 pub(crate) use requests::{Requests, Warned};
 pub(crate) use rest_scale::RestScale;
+pub(crate) use sleep::Sleep;
+pub use sleep::{ClothFellAsleep, ClothSleepingDisabled, ClothWokeUp};
 pub use status::{ClothFailed, ClothReady, ClothReset, ClothStatus, ResetCause};
 pub(crate) use step_input::{BodyPush, StepInput};
 pub(crate) use width::width_at_rest;
@@ -79,6 +82,8 @@ pub struct ClothState {
     pub(crate) steps: u64,
     /// The latest step moved nothing.
     pub(crate) is_still: bool,
+    /// Something else than a step has changed the cloth, or what it is made of, since the latest step.
+    pub(crate) is_disturbed: bool,
 }
 
 impl ClothState {

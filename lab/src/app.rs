@@ -107,38 +107,85 @@ pub fn building(options: &Options) -> Value {
     })
 }
 
-/// Flags on their poles, ten in a row; with `figures`, one of them stands beside each second flag, which doesn't touch it.
-pub fn many_flags(cloths: u32, figures: bool, frames: u32, single_threaded: bool) -> Value {
-    let plugin = ClothPlugin::default();
-    let plugin = if single_threaded { plugin.single_threaded() } else { plugin };
-    let empty = frame_microseconds(&mut headless(Some(plugin)), frames);
-    let mut app = headless(Some(plugin));
-    let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(ClothGrid::new(1.0, 0.62, 32, 20));
-    for i in 0..cloths {
-        app.world_mut().spawn((
-            Mesh3d(mesh.clone()),
-            Cloth::default(),
-            Fabric { density: 0.12, ..default() },
-            ClothSprings { bend_stiffness: 4.0, ..default() },
-            Pins::edge(ClothEdge::Left),
-            Transform::from_xyz(1.5 * (i % 10) as f32, 1.5, 1.5 * (i / 10) as f32),
-        ));
+/// Flags on their poles, ten in a row.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct Many {
+    /// Flags
+    #[arg(long, default_value_t = 100)]
+    cloths: u32,
+    /// With 17 capsules beside each second flag, which doesn't touch them
+    #[arg(long)]
+    figures: bool,
+    /// Without wind, once they have come to rest and sleep
+    #[arg(long)]
+    calm: bool,
+    /// Frames of 1/60 s
+    #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..))]
+    frames: u32,
+    /// Steps all cloths on one thread
+    #[arg(long)]
+    single_threaded: bool,
+}
+
+impl Many {
+    /// What a frame costs with them, and without.
+    pub fn measure(self) -> Value {
+        let Self { cloths, figures, calm, frames, single_threaded } = self;
+        let plugin = ClothPlugin::default();
+        let plugin = if single_threaded { plugin.single_threaded() } else { plugin };
+        let empty = frame_microseconds(&mut headless(Some(plugin)), frames);
+        let mut app = headless(Some(plugin));
+        let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(ClothGrid::new(1.0, 0.62, 32, 20));
+        for i in 0..cloths {
+            app.world_mut().spawn((
+                Mesh3d(mesh.clone()),
+                Cloth::default(),
+                Fabric { density: 0.12, ..default() },
+                ClothSprings { bend_stiffness: 4.0, ..default() },
+                Pins::edge(ClothEdge::Left),
+                Transform::from_xyz(1.5 * (i % 10) as f32, 1.5, 1.5 * (i / 10) as f32),
+            ));
+        }
+        if figures {
+            let beside = |i: u32| Vec3::new(1.5 * (i % 10) as f32 - 0.7, 1.5, 1.5 * (i / 10) as f32);
+            (0..cloths).step_by(2).for_each(|i| spawn_figure(app.world_mut(), beside(i)));
+        }
+        if calm {
+            let_sleep(&mut app);
+        } else {
+            let wind = Wind { velocity: Vec3::new(5.0, 0.0, 1.0), gusts: 0.6, turbulence: 0.25, ..default() };
+            app.world_mut().spawn(wind);
+        }
+        let update = frame_microseconds(&mut app, frames);
+        json!({
+            "scene": "many",
+            "cloths": cloths,
+            "asleep": asleep(&mut app),
+            "obstacles": if figures { cloths.div_ceil(2) * LIMBS } else { 0 },
+            "particles": cloths * 32 * 20,
+            "threads": if single_threaded { 1 } else { bevy::tasks::available_parallelism() },
+            "ms_per_update_empty": empty / 1000.0,
+            "ms_per_update": update / 1000.0,
+        })
     }
-    if figures {
-        let beside = |i: u32| Vec3::new(1.5 * (i % 10) as f32 - 0.7, 1.5, 1.5 * (i / 10) as f32);
-        (0..cloths).step_by(2).for_each(|i| spawn_figure(app.world_mut(), beside(i)));
+}
+
+/// Number of cloths that are asleep.
+fn asleep(app: &mut App) -> usize {
+    let mut status = app.world_mut().query::<&ClothStatus>();
+    status.iter(app.world()).filter(|status| **status == ClothStatus::Asleep).count()
+}
+
+/// Runs an app until all of its cloths sleep, or for two minutes of its time.
+fn let_sleep(app: &mut App) {
+    const LONGEST: f32 = 120.0;
+    let cloths = app.world_mut().query::<&Cloth>().iter(app.world()).count();
+    for _ in 0..(LONGEST / FRAME) as u32 {
+        if asleep(app) == cloths {
+            break;
+        }
+        app.update();
     }
-    app.world_mut().spawn(Wind { velocity: Vec3::new(5.0, 0.0, 1.0), gusts: 0.6, turbulence: 0.25, ..default() });
-    let update = frame_microseconds(&mut app, frames);
-    json!({
-        "scene": "many",
-        "cloths": cloths,
-        "obstacles": if figures { cloths.div_ceil(2) * LIMBS } else { 0 },
-        "particles": cloths * 32 * 20,
-        "threads": if single_threaded { 1 } else { bevy::tasks::available_parallelism() },
-        "ms_per_update_empty": empty / 1000.0,
-        "ms_per_update": update / 1000.0,
-    })
 }
 
 /// Capsules of a figure.

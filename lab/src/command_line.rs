@@ -56,20 +56,7 @@ enum Experiment {
         options: Options,
     },
     /// What a frame costs with many flags of 32 x 20 particles in the wind
-    Many {
-        /// Flags
-        #[arg(long, default_value_t = 100)]
-        cloths: u32,
-        /// With 17 capsules beside each second flag, which doesn't touch them
-        #[arg(long)]
-        figures: bool,
-        /// Frames of 1/60 s
-        #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..))]
-        frames: u32,
-        /// Steps all cloths on one thread
-        #[arg(long)]
-        single_threaded: bool,
-    },
+    Many(app::Many),
     /// What threads gain: one hanging cloth shared by them, against as many cloths as threads side by side
     Threads {
         #[command(flatten)]
@@ -178,9 +165,7 @@ impl Experiment {
             Self::Shares { options } => shares::of_frame(options),
             Self::App { options } => app::one_cloth(options),
             Self::Build { options } => Ok(app::building(options)),
-            Self::Many { cloths, figures, frames, single_threaded } => {
-                Ok(app::many_flags(*cloths, *figures, *frames, *single_threaded))
-            }
+            Self::Many(many) => Ok(many.measure()),
             Self::Sizes { .. } | Self::Laboratory { .. } | Self::Chaos(_) => {
                 Err(io::Error::other("these are several measurements"))
             }

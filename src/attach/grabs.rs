@@ -16,7 +16,7 @@ pub(crate) fn lead_grabs(
     time: Res<Time>,
 ) {
     for (state, status, in_force, mut grabs, mut input) in &mut cloths {
-        if *status != ClothStatus::Ready || grabs.is_empty() && input.grabs.is_empty() {
+        if !status.is_running() || grabs.is_empty() && input.grabs.is_empty() {
             continue;
         }
         let has_tethers = in_force.settings.tether_slack.is_some();

@@ -24,7 +24,7 @@ pub(crate) fn update_pins(
 ) {
     for (entity, pins, mesh, status, mut state, mut attachments, mut input) in &mut cloths {
         let Some(source) = meshes.get(&mesh.source) else { continue };
-        if *status != ClothStatus::Ready {
+        if !status.is_running() {
             continue;
         }
         let (targets, refused) = targets_by_particle(pins, source, &state.particle_of_vertex, &state.topology);
@@ -90,7 +90,7 @@ const DISTANCES_A_STEP: usize = 12_000;
 pub(crate) fn advance_builds(mut cloths: Query<(&mut ClothState, &mut ClothAttachments, &ClothStatus)>) {
     for (mut state, mut attachments, status) in &mut cloths {
         let is_idle = attachments.tether_build.is_none() && attachments.blend_build.is_none();
-        if *status != ClothStatus::Ready || is_idle {
+        if !status.is_running() || is_idle {
             continue;
         }
         if let Some(mut build) = attachments.blend_build.take() {
@@ -126,7 +126,7 @@ pub(crate) fn follow_targets(
     poses: Poses,
 ) {
     for (entity, status, mut state, mut attachments, mut grabs, mut requests, mut input) in &mut cloths {
-        if *status != ClothStatus::Ready {
+        if !status.is_running() {
             continue;
         }
         let (state, attachments, grabs) = (&mut *state, &mut *attachments, grabs.bypass_change_detection());
@@ -136,6 +136,7 @@ pub(crate) fn follow_targets(
         let mut jump = None;
         if let Ok(pose) = poses.compute_global_transform(entity) {
             let pose = pose.affine();
+            state.is_disturbed |= state.pose != pose;
             jump = take_asked_jump((state, attachments, grabs), &mut requests, pose);
             state.pose = pose;
             state.follow_scale(attachments);
@@ -193,6 +194,7 @@ fn plan_motions(state: &mut ClothState, attachments: &mut ClothAttachments, inpu
         };
         let end = if end.is_finite() { end } else { *place };
         if anchor.has_jumped() {
+            state.is_disturbed |= *place != end;
             *place = end;
         }
         input.pin_motions.push(PinMotion { particle: pin.particle, start: *place, end });

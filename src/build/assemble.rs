@@ -196,6 +196,7 @@ impl CandidateItem<'_, '_> {
         *self.state = built.state;
         *self.attachments = built.attachments;
         *self.input = built.input;
+        self.sleep.start_over();
         *self.status = ClothStatus::Ready;
         resolution::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &self.state, &mut self.warned);
         margin::warn_if_too_large(entity, &self.state, &self.in_force, &mut self.warned);

@@ -11,7 +11,7 @@ use crate::{
     pins::Pins,
     state::{
         ClothAttachments, ClothFailed, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests,
-        ResetCause, StepInput, Warned,
+        ResetCause, Sleep, StepInput, Warned,
     },
 };
 
@@ -33,6 +33,7 @@ pub(crate) struct Candidate {
     pub(super) report: &'static mut ClothReport,
     pub(super) in_force: &'static mut InForce,
     pub(super) input: &'static mut StepInput,
+    pub(super) sleep: &'static mut Sleep,
     pub(super) pending: &'static mut PendingBuild,
     pub(super) requests: &'static mut Requests,
     pub(super) warned: &'static mut Warned,
@@ -68,8 +69,8 @@ impl CandidateItem<'_, '_> {
         match &*self.status {
             ClothStatus::Waiting | ClothStatus::Building => Some(Cause::First),
             ClothStatus::Failed(_) => (touched || changed || added || reset).then_some(Cause::First),
-            ClothStatus::Ready if reset => Some(Cause::Again(ResetCause::Requested)),
-            ClothStatus::Ready => match self.own_mesh {
+            ClothStatus::Ready | ClothStatus::Asleep if reset => Some(Cause::Again(ResetCause::Requested)),
+            ClothStatus::Ready | ClothStatus::Asleep => match self.own_mesh {
                 // Only its status has come from elsewhere, as from a scene.
                 None => Some(Cause::First),
                 // `Mesh3d` was replaced, be it by the mesh that the cloth was made from.

@@ -13,7 +13,8 @@ use crate::{
     error::ClothError,
     frame::Poses,
     state::{
-        ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, StepInput, Warned,
+        ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, Sleep, StepInput,
+        Warned,
     },
 };
 
@@ -108,5 +109,5 @@ pub(crate) fn on_cloth_removed(
     commands
         .entity(removed.entity)
         .try_remove::<(ClothMesh, ClothState, ClothAttachments, ClothGrabs, ClothReport, ClothStatus)>()
-        .try_remove::<(InForce, PendingBuild, Requests, StepInput, Warned)>();
+        .try_remove::<(InForce, PendingBuild, Requests, Sleep, StepInput, Warned)>();
 }

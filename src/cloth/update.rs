@@ -23,7 +23,7 @@ pub(crate) fn update_settings(
 ) {
     for (entity, (cloth, fabric, springs), (status, attachments), (mut state, mut in_force, mut warned)) in &mut cloths
     {
-        if *status != ClothStatus::Ready {
+        if !status.is_running() {
             continue;
         }
         let material = fabric.material_with(springs).map(|material| {
@@ -33,6 +33,7 @@ pub(crate) fn update_settings(
         });
         let settings = cloth.validate().map(|()| {
             *in_force = InForce::new(cloth, &state);
+            state.is_disturbed = true;
             margin::warn_if_too_large(entity, &state, &in_force, &mut warned);
         });
         let refusals: Vec<_> = settings.err().into_iter().chain(material.err()).collect();

@@ -5,7 +5,7 @@ use bevy::{ecs::entity_disabling::Disabled, prelude::*};
 use crate::{
     state::{self, ClothAttachments, ClothGrabs, ClothState},
     surroundings::{
-        collider::{ColliderMemory, Obstacles},
+        collider::{ColliderMemory, Obstacles, changes::ObstacleChanges},
         wind::Winds,
     },
 };
@@ -67,6 +67,9 @@ fn shift(world: &mut World, by: Vec3) {
     colliders.iter_mut(world).for_each(|mut memory| memory.shift(by));
     if let Some(mut obstacles) = world.get_resource_mut::<Obstacles>() {
         obstacles.shift(by);
+    }
+    if let Some(mut changes) = world.get_resource_mut::<ObstacleChanges>() {
+        changes.shift(by);
     }
     if let Some(mut winds) = world.get_resource_mut::<Winds>() {
         winds.shift(by);

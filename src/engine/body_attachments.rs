@@ -55,7 +55,7 @@ fn attachment_to(bodies: &mut Bodies, entity: Entity, body_pose: &BodyPose, orig
 pub(crate) fn untie_attached(mut cloths: Query<(&StepInput, &mut ClothAttachments, &ClothStatus)>) {
     for (input, mut attachments, status) in &mut cloths {
         let on_bodies = || input.attached_pins.iter().map(|it| input.pin_motions[it.pin_motion as usize].particle);
-        if *status != ClothStatus::Ready || on_bodies().eq(attachments.on_bodies.iter().copied()) {
+        if !status.is_running() || on_bodies().eq(attachments.on_bodies.iter().copied()) {
             continue;
         }
         let on_bodies: Vec<u32> = on_bodies().collect();

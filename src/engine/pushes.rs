@@ -24,7 +24,7 @@ pub(crate) fn collect_pushes(mut cloths: Query<(Entity, &ClothStatus, &mut StepI
     buffer.clear();
     for (cloth, status, mut input) in &mut cloths {
         let pushes = input.bypass_change_detection().pushes.drain(..).enumerate();
-        if *status == ClothStatus::Ready {
+        if status.is_running() {
             buffer.extend(pushes.map(|(number, push)| (push, cloth, number)));
         }
     }

@@ -12,7 +12,7 @@ use bevy::{
 use crate::{
     cloth::InForce,
     solver::{MAX_TIME_STEP, SelfCollision, StepSettings},
-    state::{ClothAttachments, ClothReport, ClothState, StepInput},
+    state::{ClothAttachments, ClothReport, ClothSleepingDisabled, ClothState, ClothStatus, Sleep, StepInput},
 };
 
 /// All of a cloth that a step reads and writes.
@@ -20,11 +20,14 @@ use crate::{
 #[query_data(mutable)]
 pub(crate) struct Stepped {
     pub entity: Entity,
+    pub status: &'static mut ClothStatus,
     pub state: &'static mut ClothState,
     pub attachments: &'static ClothAttachments,
     pub in_force: &'static InForce,
     pub input: &'static mut StepInput,
     pub report: &'static mut ClothReport,
+    pub sleep: &'static mut Sleep,
+    pub is_sleeping_disabled: Has<ClothSleepingDisabled>,
 }
 
 /// By how much particles may gain on each other within a step beyond their speed, m.
@@ -35,8 +38,7 @@ pub(super) fn group<'w, 's>(ready: Vec<SteppedItem<'w, 's>>, dt: f32) -> Vec<Vec
     let (mut meeting, alone): (Vec<_>, Vec<_>) =
         ready.into_iter().partition(|cloth| cloth.in_force.solver.self_collision != SelfCollision::Off);
     meeting.sort_unstable_by_key(|cloth| cloth.entity);
-    let boxes: Vec<Option<Aabb3d>> =
-        meeting.iter().map(|cloth| reached(&cloth.state, &cloth.in_force.solver, dt)).collect();
+    let boxes: Vec<Option<Aabb3d>> = meeting.iter().map(|cloth| reached(cloth, dt)).collect();
     let filter = |i: usize| meeting[i].in_force.solver.collision_filter;
     // The first of each cloth's group.
     let mut leader: Vec<usize> = (0..meeting.len()).collect();
@@ -59,16 +61,19 @@ pub(super) fn group<'w, 's>(ready: Vec<SteppedItem<'w, 's>>, dt: f32) -> Vec<Vec
 }
 
 /// Box around what a cloth may reach within a step, in the world; none of a cloth that is nowhere.
-fn reached(state: &ClothState, settings: &StepSettings, dt: f32) -> Option<Aabb3d> {
+fn reached(SteppedItem { state, in_force, sleep, .. }: &SteppedItem, dt: f32) -> Option<Aabb3d> {
     let (particles, dt) = (&state.particles, dt.min(MAX_TIME_STEP));
+    let around_moving = || {
+        let ends = |(&place, &velocity): (&Vec3A, &Vec3A)| [place, place + velocity * dt];
+        let mut places = particles.position.iter().zip(&particles.velocity).flat_map(ends);
+        let first = places.next()?;
+        Some(places.fold([first; 2], |[low, high], p| [low.min(p), high.max(p)]))
+    };
     let origin = Vec3A::from(state.origin);
-    let ends = |(&place, &velocity): (&Vec3A, &Vec3A)| [origin + place, origin + place + velocity * dt];
-    let mut places = particles.position.iter().zip(&particles.velocity).flat_map(ends);
-    let first = places.next()?;
-    let (low, high) = places.fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
+    let [low, high] = sleep.reach.map(|reach| reach.bounds()).or_else(around_moving)?.map(|corner| origin + corner);
     let bounds = Aabb3d { min: low, max: high };
     // Far from the world's origin, places are rounded.
-    let StepSettings { self_collision, self_distance, .. } = *settings;
+    let StepSettings { self_collision, self_distance, .. } = in_force.solver;
     let distance = self_collision.distance_on(&state.topology, self_distance);
     let margin = distance + GAINED + 1e-6 * origin.abs().max_element();
     (low.is_finite() && high.is_finite()).then(|| bounds.grow(Vec3A::splat(margin)))

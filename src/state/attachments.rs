@@ -67,6 +67,7 @@ impl ClothAttachments {
             state.rest_scale.forget_metric();
         }
         self.tethers = tethers;
+        state.is_disturbed = true;
     }
 
     /// Drops the tethers to all pins but some.
@@ -94,6 +95,7 @@ impl ClothState {
     /// Gives free particles their mass, and `pins` none that could be moved.
     pub(crate) fn set_masses(&mut self, pins: &[HeldPin]) {
         let Some(material) = &self.material else { return };
+        self.is_disturbed = true;
         let mut is_fixed = vec![false; self.particles.len()];
         for pin in pins {
             is_fixed[pin.particle as usize] = true;

@@ -13,6 +13,7 @@ impl ClothState {
             && force.is_finite()
         {
             *total += Vec3A::from(force);
+            self.is_disturbed = true;
         }
     }
 
@@ -22,6 +23,7 @@ impl ClothState {
             && impulse.is_finite()
         {
             *velocity += Vec3A::from(impulse) * self.particles.inverse_mass[particle];
+            self.is_disturbed = true;
         }
     }
 

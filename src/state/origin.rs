@@ -21,6 +21,7 @@ pub(crate) fn carry(state: &mut ClothState, attachments: &mut ClothAttachments, 
         *velocity = jump.direction(*velocity);
     }
     attachments.world_places().for_each(carry);
+    state.is_disturbed = true;
 }
 
 /// Moves the origin after a cloth that has gone far from it.

@@ -52,6 +52,7 @@ impl ClothState {
             return;
         }
         self.rest_scale.metric = Some(metric);
+        self.is_disturbed = true;
         let ClothAttachments { tethers, built_tethers, .. } = attachments;
         if Mat3A::IDENTITY.abs_diff_eq(metric, SCALE_ROUNDING) {
             if let Some(built) = self.rest_scale.built.take() {

@@ -12,6 +12,7 @@ use crate::{
 use error::ColliderError;
 use scale_mismatch::ScaleMismatchWarning;
 
+pub(crate) mod changes;
 pub(crate) mod error;
 #[cfg(feature = "mesh_colliders")]
 pub(crate) mod mesh;
@@ -164,14 +165,7 @@ pub struct Obstacles {
 impl Obstacles {
     /// The world has been shifted, and all of them with it.
     pub(crate) fn shift(&mut self, by: Vec3) {
-        let by = Vec3A::from(by);
-        for (_, _, obstacle) in &mut self.list {
-            obstacle.start.translation += by;
-            obstacle.end.translation += by;
-            if let Some(body) = &mut obstacle.body {
-                body.centre += by;
-            }
-        }
+        self.list.iter_mut().for_each(|(_, _, obstacle)| obstacle.shift(by.into()));
     }
 
     /// All of them, with their entity and their layers.

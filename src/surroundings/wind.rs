@@ -8,7 +8,7 @@ use bevy::{
 use crate::{
     frame::Poses,
     parameter::{Parameter, check_parameters},
-    solver::{Ellipsoid, Gusts, WindRegion, WindSource},
+    solver::{Ellipsoid, Gusts, StepReach, WindRegion, WindSource},
 };
 
 /// A wind. It presses on triangles by their area and their side to it, so it fills sails and lets flags flutter.
@@ -162,6 +162,13 @@ impl Winds {
             origin: unshifted,
             ..wind
         }));
+    }
+
+    /// Whether any of them may move a cloth that has this `reach`, relative to `origin`.
+    pub fn blow_in(&self, reach: &StepReach, origin: Vec3) -> bool {
+        let relative =
+            |&(_, wind): &(Entity, WindSource)| WindSource { region: wind.region.relative_to(origin.into()), ..wind };
+        self.list.iter().map(relative).any(|wind| reach.is_in_wind(&wind))
     }
 
     /// The world has been shifted, and all winds with it.

@@ -58,7 +58,8 @@ fn half_a_step_later_the_cloth_is_drawn_half_way() {
 fn a_cloth_is_written_once_a_frame() {
     let mut app = headless();
     watch(&mut app);
-    let cloth = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 5, 5), Pins::corners());
+    let more = (Pins::corners(), ClothSleepingDisabled);
+    let cloth = spawn_cloth(&mut app, ClothGrid::new(1.0, 1.0, 5, 5), more);
     run(&mut app, 2);
     assert_eq!(writes(&mut app, cloth, 20), 20);
     set_rates(&mut app, 1.0 / 20.0, 1.0 / 60.0);

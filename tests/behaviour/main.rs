@@ -54,6 +54,7 @@ mod sides;
 #[cfg(feature = "mesh_colliders")]
 mod skinned_colliders;
 mod skins;
+mod sleep;
 mod small_cloth;
 mod stretch;
 mod teleports;

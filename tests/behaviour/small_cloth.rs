@@ -59,7 +59,7 @@ fn settled(mesh: Mesh, place: Vec3, more: impl Bundle) -> ([f32; 3], f32) {
     app.world_mut().spawn((ClothCollider::from(Sphere::new(0.005)), Transform::default()));
     let cloth = spawn_cloth(&mut app, mesh, (Transform::from_translation(place), more));
     run(&mut app, 180);
-    assert_eq!(get::<ClothStatus>(&app, cloth), &ClothStatus::Ready);
+    assert!(get::<ClothStatus>(&app, cloth).is_running());
     assert_eq!(app.world().resource::<Heard>().reset, []);
     (strain(&app, cloth), fastest(&app, cloth))
 }

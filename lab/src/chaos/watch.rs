@@ -39,7 +39,7 @@ pub fn look(stage: &mut Stage, outcome: &mut Outcome) {
         let (Some(state), Some(status)) = (world.get::<ClothState>(cloth), world.get::<ClothStatus>(cloth)) else {
             continue;
         };
-        if *status != ClothStatus::Ready {
+        if !status.is_running() {
             continue;
         }
         outcome.has_run = true;

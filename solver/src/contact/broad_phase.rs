@@ -13,7 +13,7 @@ use crate::{
         body::Bodies,
         particle::{CandidateRanges, ccd},
     },
-    input::{BodyDisplacement, MAX_TIME_STEP, Obstacle, StepContext},
+    input::{BodyDisplacement, MAX_TIME_STEP, Obstacle, StepContext, WindSource},
     layout::{
         points::Block,
         simd::{SimdLevel, Vec3x8, lane},
@@ -128,6 +128,17 @@ impl StepReach {
             return start.rotation != end.rotation || is_reached(start) || is_reached(end);
         }
         start.translation.distance(start.translation.clamp(low, high)) - radius <= distance + way
+    }
+
+    /// Whether a wind may move the cloth: it blows, and where the cloth may be.
+    pub fn is_in_wind(&self, wind: &WindSource) -> bool {
+        let BoundingSphere { centre, radius } = BoundingSphere::around(self.low, self.high);
+        wind.velocity != Vec3A::ZERO && wind.region.depth(centre) > -(radius + self.distance)
+    }
+
+    /// Corners of the box around the particles, and what holds them: its least and greatest coordinates, m.
+    pub fn bounds(&self) -> [Vec3A; 2] {
+        [self.low, self.high]
     }
 }
 

@@ -1,6 +1,6 @@
 //! Obstacles, and how they move over one step.
 
-use bevy_math::Isometry3d;
+use bevy_math::{Isometry3d, Vec3A};
 
 use crate::{input::Body, shape::Shape};
 
@@ -30,6 +30,27 @@ impl Obstacle {
     /// One that goes from `start` to `end`, which no cloth moves.
     pub fn moving(shape: impl Into<Shape>, start: Isometry3d, end: Isometry3d) -> Self {
         Self { shape: shape.into(), start, end, rounding: 0.0, friction: 1.0, body: None }
+    }
+
+    /// Moves it, and its way, by `by` (m).
+    pub fn shift(&mut self, by: Vec3A) {
+        self.start.translation += by;
+        self.end.translation += by;
+        if let Some(body) = &mut self.body {
+            body.centre += by;
+        }
+    }
+
+    /// Whether it stays where it is, and as it is, over the step.
+    pub fn is_still(&self) -> bool {
+        self.start == self.end && self.shape.is_still()
+    }
+
+    /// Whether it ends the step as another ended an earlier one: the same body of the same shape in the same place.
+    pub fn ends_like(&self, earlier: &Self) -> bool {
+        let Self { end, rounding, friction, body, .. } = self;
+        let is_alike = (*end, *rounding, *friction) == (earlier.end, earlier.rounding, earlier.friction);
+        is_alike && body.is_some() == earlier.body.is_some() && self.shape.ends_like(&earlier.shape)
     }
 
     /// Pose at the fraction `t` (0..=1) of the step.

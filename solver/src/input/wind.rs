@@ -55,20 +55,33 @@ impl WindRegion {
         }
     }
 
+    /// How deep inside `point` is, m: its distance from the border. Negative outside, by that distance at most.
+    pub(crate) fn depth(&self, point: Vec3A) -> f32 {
+        match *self {
+            Self::Everywhere => f32::INFINITY,
+            Self::Sphere { centre, radius, .. } => radius - point.distance(centre),
+            Self::Ellipsoid { pose, shape, .. } => {
+                let local = pose.inverse().transform_point(point);
+                -Solid::Ellipsoid(shape).surface(local).distance
+            }
+            Self::Cuboid { pose, half_size, .. } => {
+                let local = pose.inverse().transform_point(point);
+                (half_size - local.abs()).min_element()
+            }
+        }
+    }
+
+    /// Width of the edge inside of which the wind dies down, m.
+    fn edge(&self) -> f32 {
+        match *self {
+            Self::Everywhere => 0.0,
+            Self::Sphere { edge, .. } | Self::Ellipsoid { edge, .. } | Self::Cuboid { edge, .. } => edge,
+        }
+    }
+
     /// Share of the wind that is felt at `point`: 1 inside, 0 outside, smooth over the edge.
     pub fn weight(&self, point: Vec3A) -> f32 {
-        let (depth, edge) = match *self {
-            Self::Everywhere => return 1.0,
-            Self::Sphere { centre, radius, edge } => (radius - point.distance(centre), edge),
-            Self::Ellipsoid { pose, shape, edge } => {
-                let local = pose.inverse().transform_point(point);
-                (-Solid::Ellipsoid(shape).surface(local).distance, edge)
-            }
-            Self::Cuboid { pose, half_size, edge } => {
-                let local = pose.inverse().transform_point(point);
-                ((half_size - local.abs()).min_element(), edge)
-            }
-        };
+        let (depth, edge) = (self.depth(point), self.edge());
         if depth <= 0.0 {
             0.0
         } else if depth >= edge {

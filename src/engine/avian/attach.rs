@@ -22,7 +22,7 @@ pub(super) fn attach_pins(
         Some((body.entity, body_pose(&body)))
     };
     for (cloth, status, state, attachments, mut input) in &mut cloths {
-        if *status == ClothStatus::Ready {
+        if status.is_running() {
             engine::attach_pins(cloth, (state, attachments, &mut input), &mut bridge.bodies, of);
         }
     }

@@ -50,7 +50,7 @@ fn measure(mut diagnostics: Diagnostics, cloths: Query<(&ClothState, &ClothRepor
     if time.delta_secs() <= 0.0 {
         return;
     }
-    let ready = || cloths.iter().filter(|(.., status)| **status == ClothStatus::Ready);
+    let ready = || cloths.iter().filter(|(.., status)| status.is_running());
     diagnostics.add_measurement(&ClothDiagnosticsPlugin::STEP_TIME, || {
         ready().map(|(_, report, _)| report.step_time().as_secs_f64() * 1e3).sum()
     });

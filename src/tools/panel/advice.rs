@@ -139,6 +139,7 @@ fn two_digits(value: f32) -> f32 {
 /// A cloth that is looked at.
 #[derive(Clone, Copy)]
 pub(super) struct Observed<'a> {
+    pub is_asleep: bool,
     pub state: &'a ClothState,
     pub attachments: &'a ClothAttachments,
     pub grabs: &'a ClothGrabs,

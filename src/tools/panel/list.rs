@@ -41,7 +41,7 @@ pub(super) fn trouble(world: &World, chosen: &[Entity]) -> Option<(&'static str,
         ClothStatus::Waiting => Some(("Waits for its mesh", "It is built once its Mesh3d has loaded.".into())),
         ClothStatus::Building => Some(("Is being built", "Its mesh is large: that takes some frames.".into())),
         ClothStatus::Failed(error) => Some(("Can't be built", error.to_string())),
-        ClothStatus::Ready => None,
+        ClothStatus::Ready | ClothStatus::Asleep => None,
     })
 }
 

@@ -40,7 +40,7 @@ pub(super) fn remember(
     mut panel: ResMut<ClothPanel>,
 ) {
     for (entity, cloth, fabric, springs, pins, follower, status) in &cloths {
-        if *status == ClothStatus::Ready {
+        if status.is_running() {
             commands.entity(entity).try_insert(LoadedCloth {
                 cloth: cloth.clone(),
                 fabric: fabric.clone(),

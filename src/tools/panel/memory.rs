@@ -49,6 +49,8 @@ pub(super) struct Readings {
     pub substeps: u32,
     /// Why they are so many.
     pub substep_reason: SubstepReason,
+    /// How many of the cloths are asleep: they take no substeps.
+    pub asleep: usize,
     pub contacts: u32,
     pub largest_strain: f32,
     /// Over all cloths, by their particles.
@@ -90,7 +92,7 @@ pub(super) fn note_step(mut panel: ResMut<ClothPanel>, cloths: Query<(&ClothRepo
         return;
     }
     let ready = memory.chosen.iter().filter_map(|&cloth| cloths.get(cloth).ok());
-    let ready = ready.filter(|(_, status)| **status == ClothStatus::Ready);
+    let ready = ready.filter(|(_, status)| status.is_running());
     let total: f32 = ready.map(|(report, _)| report.step_time().as_secs_f32() * 1e3).sum();
     if memory.step_times.len() == STEPS {
         memory.step_times.pop_front();

@@ -37,7 +37,8 @@ const WEAVE: Naming = naming(
 );
 const SUBSTEPS: Naming = naming(
     "Substeps taken",
-    "Substeps of the latest step, and why so many. Of several cloths, those of the one that took most.",
+    "Substeps of the latest step, and why so many. Of several cloths, those of the one that took most. A cloth at rest is asleep, and takes none, until \
+     something changes near it.",
 );
 const CONTACTS: Naming = naming(
     "Contacts",
@@ -61,7 +62,9 @@ fn show_cost(ui: &mut Ui, readings: &Readings, step_times: &VecDeque<f32>) {
     reading(ui, PARTICLES, readings.particles.to_string());
     reading(ui, SPRINGS, readings.springs.to_string());
     reading(ui, WEAVE, readings.structure.clone());
-    reading(ui, SUBSTEPS, format!("{}, {}", readings.substeps, readings.substep_reason));
+    let taken = format!("{}, {}", readings.substeps, readings.substep_reason);
+    let is_asleep = readings.asleep > 0 && readings.substeps == 0;
+    reading(ui, SUBSTEPS, if is_asleep { "none, asleep".into() } else { taken });
     reading(ui, CONTACTS, readings.contacts.to_string());
 }
 

@@ -82,8 +82,9 @@ pub(super) fn measure(world: &World, memory: &mut Memory) {
 /// Looks at a cloth that runs.
 fn observe(world: &World, cloth: Entity) -> Option<Observed<'_>> {
     let cloth = world.get_entity(cloth).ok()?;
-    cloth.get::<ClothStatus>().filter(|status| **status == ClothStatus::Ready)?;
+    let status = cloth.get::<ClothStatus>().filter(|status| status.is_running())?;
     Some(Observed {
+        is_asleep: *status == ClothStatus::Asleep,
         state: cloth.get::<ClothState>()?,
         attachments: cloth.get::<ClothAttachments>()?,
         grabs: cloth.get::<ClothGrabs>()?,
@@ -93,9 +94,15 @@ fn observe(world: &World, cloth: Entity) -> Option<Observed<'_>> {
 }
 
 /// Adds the numbers of one cloth. Gives its kinetic energy, J.
-fn add(readings: &mut Readings, Observed { state, report, .. }: &Observed, strain: Strain, gravity: Vec3) -> f32 {
+fn add(
+    readings: &mut Readings,
+    Observed { is_asleep, state, report, .. }: &Observed,
+    strain: Strain,
+    gravity: Vec3,
+) -> f32 {
     let energy = state.energy(gravity);
-    if let Some(latest) = report.latest() {
+    readings.asleep += usize::from(*is_asleep);
+    if let Some(latest) = report.latest().filter(|_| !is_asleep) {
         if latest.substeps > readings.substeps {
             (readings.substeps, readings.substep_reason) = (latest.substeps, latest.reason);
         }

@@ -1,0 +1,102 @@
+//! Which obstacles aren't what they were a step before: they wake cloth that sleeps near them.
+
+use bevy::{
+    math::{Isometry3d, Vec3A},
+    prelude::*,
+};
+
+use super::Obstacles;
+use crate::solver::{CollisionFilter, Obstacle, StepReach};
+
+/// Obstacles that have moved, changed, come or gone since the step before.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct ObstacleChanges {
+    /// All obstacles in the step before, in the order of their entities.
+    known: Vec<(Entity, u32, Obstacle)>,
+    /// Those that have changed with their layers: as they are, and as they were.
+    changed: Vec<(u32, Obstacle)>,
+}
+
+impl ObstacleChanges {
+    /// Whether a cloth may `reach` one of them that `filter` selects. Its places are relative to `origin`.
+    pub fn are_near(&self, reach: &StepReach, origin: Vec3, filter: CollisionFilter) -> bool {
+        let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - Vec3A::from(origin), pose.rotation);
+        self.changed.iter().filter(|(layers, _)| filter.selects(*layers)).any(|(_, obstacle)| {
+            let ends = [relative(obstacle.start), relative(obstacle.end)];
+            reach.includes(&obstacle.shape, ends.each_ref(), obstacle.rounding)
+        })
+    }
+
+    /// The world has been shifted, and all of them with it.
+    pub fn shift(&mut self, by: Vec3) {
+        self.known.iter_mut().for_each(|(_, _, obstacle)| obstacle.shift(by.into()));
+    }
+
+    /// Compares with the obstacles of the coming step.
+    fn follow(&mut self, now: &[(Entity, u32, Obstacle)]) {
+        self.changed.clear();
+        let (mut old, mut new) = (self.known.iter().peekable(), now.iter().peekable());
+        loop {
+            // Whether the next one was there in the step before, and is still.
+            let (was, is) = match (old.peek(), new.peek()) {
+                (None, None) => break,
+                (Some(_), None) => (true, false),
+                (None, Some(_)) => (false, true),
+                (Some((one, ..)), Some((other, ..))) => (one <= other, one >= other),
+            };
+            let (before, now) = (old.next_if(|_| was), new.next_if(|_| is));
+            let is_same = before.zip(now).is_some_and(|((_, old_layers, before), (_, layers, now))| {
+                old_layers == layers && now.is_still() && now.ends_like(before)
+            });
+            if !is_same {
+                let either = before.into_iter().chain(now);
+                self.changed.extend(either.map(|(_, layers, obstacle)| (*layers, obstacle.clone())));
+            }
+        }
+        if !self.changed.is_empty() {
+            self.known.clear();
+            self.known.extend_from_slice(now);
+        }
+    }
+}
+
+/// Finds which obstacles have changed since the step before, in a step in which time goes on.
+pub(crate) fn find_changes(obstacles: Res<Obstacles>, mut changes: ResMut<ObstacleChanges>, time: Res<Time>) {
+    if time.delta_secs() > 0.0 {
+        changes.follow(&obstacles.list);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::Solid;
+
+    fn ball(number: u32, x: f32) -> (Entity, u32, Obstacle) {
+        let entity = Entity::from_raw_u32(number).unwrap();
+        (entity, 1, Obstacle::still(Solid::Sphere(Sphere::new(0.1)), Isometry3d::from_xyz(x, 0.0, 0.0)))
+    }
+
+    fn places(changes: &mut ObstacleChanges, now: &[(Entity, u32, Obstacle)]) -> Vec<f32> {
+        changes.follow(now);
+        changes.changed.iter().map(|(_, obstacle)| obstacle.end.translation.x).collect()
+    }
+
+    #[test]
+    fn what_moves_changes_comes_or_goes_is_told_once_as_it_was_and_is() {
+        let mut changes = ObstacleChanges::default();
+        let three = [ball(1, 1.0), ball(2, 2.0), ball(3, 3.0)];
+        assert_eq!(places(&mut changes, &three), [1.0, 2.0, 3.0], "they come");
+        assert_eq!(places(&mut changes, &three), [0.0; 0], "and stay");
+        assert_eq!(places(&mut changes, &[ball(1, 1.0), ball(3, 3.0)]), [2.0], "one goes");
+        assert_eq!(places(&mut changes, &[ball(1, 1.5), ball(3, 3.0)]), [1.0, 1.5], "one is put elsewhere");
+        let mut moving = [ball(1, 1.5), ball(3, 4.0)];
+        moving[1].2.start.translation.x = 3.0;
+        assert_eq!(places(&mut changes, &moving), [3.0, 4.0], "one moves");
+        assert_eq!(places(&mut changes, &[ball(1, 1.5), ball(3, 4.0)]), [0.0; 0], "and has come to rest");
+        let mut other = [ball(1, 1.5), ball(3, 4.0)];
+        other[0].1 = 2;
+        other[1].2.friction = 0.0;
+        assert_eq!(places(&mut changes, &other), [1.5, 1.5, 4.0, 4.0], "layers and friction count");
+    }
+}
