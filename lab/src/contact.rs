@@ -66,6 +66,9 @@ pub enum Contact {
     Needle {
         #[command(flatten)]
         options: Options,
+        /// grid, delaunay or hex
+        #[arg(long, default_value = "grid")]
+        mesh: MeshSource,
         /// A capsule of 2 mm radius, the corner of a box, or the tip of a cone
         #[arg(long, value_enum, default_value = "needle")]
         on: Sharp,
@@ -74,6 +77,9 @@ pub enum Contact {
     Bullet {
         #[command(flatten)]
         options: Options,
+        /// grid, delaunay or hex: of what a ball hits
+        #[arg(long, default_value = "grid")]
+        mesh: MeshSource,
         /// A ball of 20 or 5 mm radius hits a square metre that is held all around, or one that flies hits a wall of 4 mm or
         /// a ball of 10 cm radius
         #[arg(long, value_enum, default_value = "ball")]
@@ -133,24 +139,27 @@ impl Contact {
             Self::Storm { options } => {
                 ("storm", options, grid, storm::storm(&options.settings(SelfCollision::Robust)?)?)
             }
-            Self::Needle { options, on } => {
+            Self::Needle { options, mesh, on } => {
                 let settings = options.settings(SelfCollision::Off)?;
+                let (cloth, _) = hang::free(options, &settings, mesh)?;
                 let (name, sharp) = match on {
                     Sharp::Needle => ("needle", needle::Sharp::Needle),
                     Sharp::Corner => ("needle: corner", needle::Sharp::Corner),
                     Sharp::Cone => ("needle: cone", needle::Sharp::Cone),
                 };
-                (name, options, grid, needle::needle(&settings, sharp)?)
+                (name, options, mesh, needle::below(&settings, cloth, sharp))
             }
-            Self::Bullet { options, of } => {
+            Self::Bullet { options, mesh, of } => {
                 let settings = options.settings(SelfCollision::Off)?;
+                let (cloth, _) = hang::free(options, &settings, mesh)?;
                 let (name, scene) = match of {
-                    Impact::Ball => ("bullet: ball", bullet::ball(&settings, 0.02)?),
-                    Impact::Pellet => ("bullet: pellet", bullet::ball(&settings, 0.005)?),
+                    Impact::Ball => ("bullet: ball", bullet::ball_against(&settings, cloth, 0.02)),
+                    Impact::Pellet => ("bullet: pellet", bullet::ball_against(&settings, cloth, 0.005)),
                     Impact::Wall => ("bullet: wall", bullet::wall(&settings)?),
                     Impact::Post => ("bullet: post", bullet::post(&settings, 0.1)?),
                 };
-                (name, options, grid, scene)
+                let mesh = if matches!(of, Impact::Ball | Impact::Pellet) { mesh } else { grid };
+                (name, options, mesh, scene)
             }
         };
         measure::run(name, options, mesh, scene, None)

@@ -8,31 +8,36 @@ use bevy::{
 };
 use bevy_drape::solver::Solid;
 
-use super::{Scene, Settings, crossing, drape::GROUND};
+use super::{Cloth, Scene, Settings, crossing, drape::GROUND};
 
 /// m/s
 const SPEED: f32 = 30.0;
 
+/// A ball of `radius` metres meets a grid of a square metre.
+pub fn ball(settings: &Settings, radius: f32) -> io::Result<Scene> {
+    Ok(ball_against(settings, settings.cloth(&settings.grid(1.0, 1.0).lying().into())?, radius))
+}
+
 /// A ball of `radius` metres meets a square metre that is held all around, from below, and stops 0.15 m above it. What it
 /// counts is whether the ball has passed.
-pub fn ball(settings: &Settings, radius: f32) -> io::Result<Scene> {
+pub fn ball_against(settings: &Settings, cloth: Cloth, radius: f32) -> Scene {
     const START: f32 = -1.0;
     const STOP: f32 = 0.15;
     /// Until the cloth has come to rest, s.
     const WAIT: f32 = 0.5;
     let is_border = |rest: Vec3| rest.x.abs().max(rest.z.abs()) > 0.4999;
-    let cloth = settings.cloth(&settings.grid(1.0, 1.0).lying().into())?.held(is_border);
+    let cloth = cloth.held(is_border);
     let aside = Vec3::new(0.3, 0.0, 0.2) * settings.cell();
     let place = move |seconds: f32| aside + Vec3::Y * (START + SPEED * (seconds - WAIT).max(0.0)).min(STOP);
     let scene = Scene::new(settings, [cloth]).with(Solid::Sphere(Sphere::new(radius)), place(0.0));
     let scene = scene.led_by(move |scene, seconds| {
         scene.lead_obstacle(0, Isometry3d::from_translation(place(seconds)));
     });
-    Ok(scene.judged_by("passed", |scene| {
+    scene.judged_by("passed", |scene| {
         let centre = scene.surroundings.obstacles[0].end.translation;
         let above = crossing::crossings(scene.triangles(), [centre, centre + Vec3A::Y * 10.0]).count();
         (above % 2 == 0) as u32 as f32
-    }))
+    })
 }
 
 /// A square metre that flies, and falls, meets a wall of 4 mm, aslant. What it counts are particles on the other side: under its

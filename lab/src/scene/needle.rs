@@ -9,7 +9,7 @@ use bevy::{
 use bevy_drape::solver::Solid;
 
 use super::{
-    Scene, Settings, crossing,
+    Cloth, Scene, Settings, crossing,
     drape::{self, GROUND},
 };
 
@@ -52,11 +52,17 @@ impl Sharp {
     }
 }
 
-/// A square metre, with the tip below no particle and no edge. What it counts are triangles that the tip has gone through.
+/// A grid of a square metre.
 pub fn needle(settings: &Settings, sharp: Sharp) -> io::Result<Scene> {
+    Ok(below(settings, settings.cloth(&settings.grid(1.0, 1.0).lying().into())?, sharp))
+}
+
+/// A cloth that lies in the plane, with the tip below no particle and no edge of a grid. What it counts are triangles that the tip
+/// has gone through.
+pub fn below(settings: &Settings, cloth: Cloth, sharp: Sharp) -> Scene {
     let aside = Vec3A::new(0.3, 0.0, 0.2) * settings.cell();
-    let cloth = settings.cloth(&settings.grid(1.0, 1.0).lying().into())?.placed(|rest| Vec3A::from(rest) + aside);
+    let cloth = cloth.placed(|rest| Vec3A::from(rest) + aside);
     let (solid, pose, way) = sharp.solid();
     let scene = Scene::new(settings, [drape::raised(cloth)]).with_shape(solid, solid, pose).with(GROUND, Vec3::ZERO);
-    Ok(scene.judged_by("pierced", move |scene| crossing::crossings(scene.triangles(), way).count() as f32))
+    scene.judged_by("pierced", move |scene| crossing::crossings(scene.triangles(), way).count() as f32)
 }

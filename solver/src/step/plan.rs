@@ -4,7 +4,7 @@ use crate::{
     constraint::{attach::grab, implicit::ImplicitSheet},
     contact::{self, feature},
     explicit::{self, Stability},
-    input::{ContactRisk, MAX_TIME_STEP, Method, SelfCollision, StepContext},
+    input::{ContactRisk, MAX_TIME_STEP, Method, Obstacle, SelfCollision, StepContext},
     particles::Particles,
     scratch::Scratch,
     shape::sharp_features::Sharpness,
@@ -37,8 +37,8 @@ impl<'a> Plan<'a> {
         if particles.is_empty() || ctx.dt.is_nan() || ctx.dt <= 0.0 {
             return None;
         }
-        let mut near = contact::near_obstacles(particles, ctx).peekable();
-        let is_near = near.peek().is_some();
+        let near = contact::near_obstacles(particles, ctx);
+        let is_near = near.clone().next().is_some();
         // Nothing else asks for it: a cloth that nothing is near needs no surface.
         let longest_edge = if is_near { feature::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };
         let is_implicit = ImplicitSheet::is_for(topology, ctx);
@@ -53,16 +53,27 @@ impl<'a> Plan<'a> {
             (!is_tethered, SubstepReason::Untethered),
         ];
         let some = lesser_risks.into_iter().find_map(|(is_there, reason)| is_there.then_some(reason));
-        let risk =
-            match (feature::sharpest(near, particles, topology, longest_edge, ctx, dt), ctx.settings.self_collision) {
-                (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
-                (Some((Sharpness::Edge, wanted)), _) => ContactRisk::Edge(wanted),
-                (None, SelfCollision::Robust) => ContactRisk::Robust,
-                (None, _) if some.is_some() => ContactRisk::Some,
-                (None, _) => ContactRisk::None,
-            };
+        let is_solved_along = |obstacle: &Obstacle| is_implicit && obstacle.body.is_none();
+        let sharpest = |is_solved: bool| {
+            let some = near.clone().filter(|obstacle| is_solved_along(obstacle) == is_solved);
+            feature::sharpest(some, particles, topology, longest_edge, ctx, dt)
+        };
+        let risk = match (sharpest(false), ctx.settings.self_collision) {
+            (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
+            (Some((Sharpness::Edge, wanted)), _) => ContactRisk::Edge(wanted),
+            (None, SelfCollision::Robust) => ContactRisk::Robust,
+            (None, _) if some.is_some() => ContactRisk::Some,
+            (None, _) => ContactRisk::None,
+        };
         let policy = &ctx.settings.substep_policy;
-        let (wanted, levels) = policy.of_step(risk, dt);
+        let of_risk = |risk| (risk, policy.of_step(risk, dt));
+        let solved_along = sharpest(true).map(|sharp| match sharp {
+            (Sharpness::Edge, wanted) => of_risk(ContactRisk::EdgeSolvedAlong(wanted)),
+            (Sharpness::Tip, wanted) => of_risk(ContactRisk::TipSolvedAlong(wanted)),
+        });
+        let others = of_risk(risk);
+        let more = solved_along.filter(|(_, (substeps, _))| *substeps > others.1.0);
+        let (risk, (wanted, levels)) = more.unwrap_or(others);
         let (without_risk, _) = policy.of_step(ContactRisk::None, dt);
         let reason = match ctx.settings.method {
             Method::Explicit => SubstepReason::Stability,

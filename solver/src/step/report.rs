@@ -88,8 +88,8 @@ impl SubstepReason {
             ContactRisk::None => Self::Strain,
             ContactRisk::Some => some,
             ContactRisk::Robust => Self::RobustSelfCollision,
-            ContactRisk::Edge(_) => Self::SharpEdge,
-            ContactRisk::Tip(_) => Self::SharpTip,
+            ContactRisk::Edge(_) | ContactRisk::EdgeSolvedAlong(_) => Self::SharpEdge,
+            ContactRisk::Tip(_) | ContactRisk::TipSolvedAlong(_) => Self::SharpTip,
         }
     }
 }

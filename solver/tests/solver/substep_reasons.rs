@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use bevy_math::{
-    Isometry3d, Vec3, Vec3A,
+    Isometry3d, Mat3A, Quat, Vec3, Vec3A,
     primitives::{Cone, Cuboid, Sphere},
 };
 use drape_solver::{
-    DeformedPoints, MeshShape, Method, Obstacle, SelfCollision, Shape, Solid, SubstepReason, step_together,
+    Body, DeformedPoints, Elasticity, Material, MeshShape, Method, Moduli, Obstacle, SelfCollision, Shape, Solid,
+    SubstepReason, step_together,
 };
 
 use crate::{
@@ -15,7 +16,7 @@ use crate::{
     fixtures::{
         hand::{Grip, hand},
         material::{Springs, springs},
-        mesh::icosphere,
+        mesh::{Grid, icosphere, uneven},
     },
     meshes::ball,
 };
@@ -56,6 +57,32 @@ fn what_raises_the_number_is_the_reason() {
     assert_eq!(reason_of(above(Solid::Cuboid(Cuboid::from_length(0.4)), 0.2)), SubstepReason::SharpEdge);
     assert_eq!(reason_of(above(Solid::Cone(Cone { radius: 0.1, height: 0.4 }), 0.2)), SubstepReason::SharpTip);
     assert_eq!(reason_of(hung().like_a_game(Method::Explicit)), SubstepReason::Stability);
+}
+
+#[test]
+fn implicit_steps_take_more_near_what_is_sharp_only_where_that_is_fast() {
+    let uneven_sheet = || {
+        let mesh = uneven(Grid::new(1.0, 1.0, 12, 12).lying(), 0.25);
+        let sheet = Moduli::from_strips([4000.0; 2], 50.0, [0.0; 2], 1.0).expect("a sheet");
+        Bed::new(mesh, Material::bare(0.15, Elasticity::Moduli(sheet))).like_a_game(Method::Strands)
+    };
+    let corner = Quat::from_rotation_arc(Vec3::ONE.normalize(), Vec3::Y);
+    let at = |y: f32| Isometry3d::new(Vec3::Y * y, corner);
+    let cuboid = Solid::Cuboid(Cuboid::from_length(0.4));
+    let steps = |obstacle: Obstacle| {
+        let mut bed = Bed { obstacles: vec![obstacle], ..uneven_sheet() };
+        bed.step(STEP);
+        let report = bed.step(STEP);
+        (report.substeps, report.reason)
+    };
+    assert_eq!(steps(Obstacle::still(cuboid, at(-0.36))), (8, SubstepReason::Obstacle));
+    // 1 m in a step, and half an edge is some 5 cm.
+    let (substeps, reason) = steps(Obstacle::moving(cuboid, at(-1.36), at(-0.36)));
+    assert!((18..32).contains(&substeps) && reason == SubstepReason::SharpEdge, "{substeps}, {reason}");
+    // What the cloth pushes isn't solved along with it.
+    let body = Body { inverse_mass: 1.0, inverse_inertia: Mat3A::IDENTITY, centre: Vec3A::NEG_Y * 0.36 };
+    let pushed = Obstacle { body: Some(body), ..Obstacle::still(cuboid, at(-0.36)) };
+    assert_eq!(steps(pushed), (32, SubstepReason::SharpEdge));
 }
 
 #[test]
