@@ -35,10 +35,6 @@ struct Specimen {
     since: f32,
 }
 
-/// Where the coefficient is shown.
-#[derive(Component)]
-struct Display;
-
 fn setup(mut commands: Commands, mut studio: common::Studio) {
     common::spawn_camera(&mut commands, Vec3::new(0.0, 1.08, 0.48), Vec3::new(0.0, 0.77, 0.0));
     let support = Cylinder::new(SUPPORT as f32, HEIGHT);
@@ -54,13 +50,6 @@ fn setup(mut commands: Commands, mut studio: common::Studio) {
         held,
         Transform::from_xyz(0.0, HEIGHT, 0.0),
         Specimen::default(),
-    ));
-    commands.spawn((
-        Text::default(),
-        TextFont::from_font_size(30.0),
-        TextColor(Color::srgb(0.97, 0.96, 0.94)),
-        Node { position_type: PositionType::Absolute, left: px(24), top: px(20), ..default() },
-        Display,
     ));
 }
 
@@ -89,7 +78,7 @@ fn change_fabric(
     fabric.set_if_neq(Fabric { damping: 4.0, ..Fabric::PRESETS[specimen.preset].fabric.clone() });
 }
 
-fn measure(specimen: Single<(&Specimen, &ClothState)>, mut display: Single<&mut Text, With<Display>>) {
+fn measure(specimen: Single<(&Specimen, &ClothState)>, mut overlay: ResMut<common::Overlay>) {
     let (specimen, state) = *specimen;
     let positions: Vec<_> = state.positions_from_origin().map(Into::into).collect();
     if positions.is_empty() {
@@ -99,5 +88,5 @@ fn measure(specimen: Single<(&Specimen, &ClothState)>, mut display: Single<&mut 
     let shadow = shadow::area(&positions, state.triangles());
     let coefficient = (shadow - disc(SUPPORT)) / (disc(RADIUS) - disc(SUPPORT));
     let name = Fabric::PRESETS[specimen.preset].name.replace('_', " ");
-    display.0 = format!("{name}: {:.0} %", 100.0 * coefficient);
+    overlay.readings = format!("{name}: {:.0} %", 100.0 * coefficient);
 }

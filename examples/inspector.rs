@@ -10,12 +10,12 @@ mod common;
 
 use bevy::{math::primitives::InfinitePlane3d, prelude::*};
 use bevy_drape::prelude::*;
-use bevy_inspector_egui::{bevy_egui::EguiPlugin, quick::WorldInspectorPlugin};
+use bevy_inspector_egui::quick::WorldInspectorPlugin;
 
 fn main() -> AppExit {
     common::app("Cloth in the inspector", "Left drag: turn   Wheel: zoom   Edit components on the left")
-        // The inspector needs egui before it, and so would `ClothPanelPlugin`.
-        .add_plugins((EguiPlugin::default(), WorldInspectorPlugin::new(), ClothPlugin::default()))
+        // The inspector needs `EguiPlugin` before it, and so would `ClothPanelPlugin`: it comes with the help.
+        .add_plugins((WorldInspectorPlugin::new(), ClothPlugin::default()))
         .add_systems(Startup, (common::spawn_scenery, setup))
         .run()
 }

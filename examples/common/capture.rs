@@ -113,12 +113,11 @@ struct Photographer {
     viewport: Option<Viewport>,
 }
 
-/// A camera for the window, which doesn't exist, draws into the picture instead; so does the user interface.
+/// A camera for the window, which doesn't exist, draws into the picture instead.
 fn retarget(
     add: On<Add, Camera>,
     capture: Res<Capture>,
     mut cameras: Query<(&Camera, &mut RenderTarget)>,
-    interface: Query<(), With<IsDefaultUiCamera>>,
     mut commands: Commands,
 ) {
     let Ok((camera, mut target)) = cameras.get_mut(add.entity) else {
@@ -128,12 +127,8 @@ fn retarget(
         return;
     }
     *target = RenderTarget::Image(capture.target.clone().into());
-    let mut entity = commands.entity(add.entity);
     if camera.is_active {
-        entity.insert(Photographer { viewport: camera.viewport.clone() });
-    }
-    if interface.is_empty() {
-        entity.insert(IsDefaultUiCamera);
+        commands.entity(add.entity).insert(Photographer { viewport: camera.viewport.clone() });
     }
 }
 

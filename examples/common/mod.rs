@@ -9,6 +9,7 @@ mod lathe;
 mod loading;
 mod machine;
 mod mipmaps;
+mod overlay;
 mod scenery;
 mod studio;
 mod weave;
@@ -30,6 +31,7 @@ use clap::Parser;
 pub use arguments::Arguments;
 use capture::CapturePlugin;
 pub use lathe::turned;
+pub use overlay::Overlay;
 #[cfg(feature = "picking")]
 pub use scenery::rest_camera_while_dragging;
 pub use scenery::{spawn_camera, spawn_ground, spawn_scenery, spawn_sky, spawn_sun};
@@ -67,10 +69,7 @@ pub fn app_with(arguments: Arguments, title: &str, help: &str) -> App {
             app.add_plugins((plugins_with_a_window(title, arguments.size.0), PanOrbitCameraPlugin));
         }
     }
-    let help = help.to_owned();
-    app.add_systems(Startup, move |mut commands: Commands| {
-        scenery::spawn_help(&mut commands, &help);
-    });
+    app.add_plugins(overlay::plugin).insert_resource(Overlay { help: help.to_owned(), ..default() });
     app
 }
 

@@ -182,21 +182,3 @@ pub fn spawn_sun(commands: &mut Commands) {
         Transform::from_translation(SUN).looking_at(Vec3::ZERO, Vec3::Y),
     ));
 }
-
-/// One line at the bottom left that says what the user can do.
-pub fn spawn_help(commands: &mut Commands, help: &str) {
-    commands.spawn((
-        Text::new(help),
-        TextFont::from_font_size(15.0),
-        TextColor(Color::srgb(0.97, 0.96, 0.94)),
-        Node {
-            position_type: PositionType::Absolute,
-            left: px(14),
-            bottom: px(14),
-            padding: UiRect::axes(px(10), px(5)),
-            border_radius: BorderRadius::all(px(6)),
-            ..default()
-        },
-        BackgroundColor(Color::srgba(0.10, 0.11, 0.13, 0.55)),
-    ));
-}

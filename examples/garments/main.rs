@@ -51,7 +51,7 @@ fn main() -> AppExit {
     let Command { show, shared } = Command::parse();
     common::app_with(shared, "Garments", "Garments of irregular triangles, cut and sewn in code")
         .add_plugins(ClothPlugin::default())
-        .add_systems(Startup, (common::spawn_scenery, spawn_display))
+        .add_systems(Startup, common::spawn_scenery)
         .add_systems(Startup, (hang.run_if(move || show == Show::Hung), drop.run_if(move || show == Show::Dropped)))
         .add_systems(Update, display)
         .run()
@@ -114,33 +114,11 @@ fn spawn(commands: &mut Commands, studio: &mut common::Studio, item: Item, place
     ));
 }
 
-/// Where the numbers are shown.
-#[derive(Component)]
-struct Display;
-
-fn spawn_display(mut commands: Commands) {
-    commands.spawn((
-        Text::default(),
-        TextFont::from_font_size(13.0),
-        TextColor(Color::srgb(0.97, 0.96, 0.94)),
-        Node {
-            position_type: PositionType::Absolute,
-            left: px(14),
-            top: px(14),
-            padding: UiRect::axes(px(10), px(5)),
-            border_radius: BorderRadius::all(px(6)),
-            ..default()
-        },
-        BackgroundColor(Color::srgba(0.10, 0.11, 0.13, 0.55)),
-        Display,
-    ));
-}
-
-fn display(cloths: Query<(&Label, &ClothState, &ClothReport)>, mut display: Single<&mut Text, With<Display>>) {
+fn display(cloths: Query<(&Label, &ClothState, &ClothReport)>, mut overlay: ResMut<common::Overlay>) {
     let lines = cloths.iter().filter_map(|(label, state, report)| {
         let (strain, substeps) = (100.0 * state.strain().largest, report.latest()?.substeps);
         let particles = state.particle_count();
         Some(format!("{}: {particles} particles, {substeps} substeps, stretched by {strain:.1} % at most", label.0))
     });
-    display.0 = lines.collect::<Vec<_>>().join("\n");
+    overlay.readings = lines.collect::<Vec<_>>().join("\n");
 }
