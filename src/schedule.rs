@@ -15,7 +15,11 @@ use crate::{
     fabric::{self, Fabric},
     frame::{self, ClothRun},
     simulate,
-    surroundings::{self, collider, wind},
+    surroundings::{
+        self,
+        collider::{self, changes},
+        wind,
+    },
 };
 
 /// The stages of a cloth's frame, in their order. Games order their systems around them.
@@ -91,7 +95,7 @@ impl Plugin for ClothPlugin {
         fabric::loader::register(app);
         app.init_resource::<surroundings::ClothGravity>()
             .init_resource::<collider::Obstacles>()
-            .init_resource::<collider::changes::ObstacleChanges>()
+            .init_resource::<changes::ObstacleChanges>()
             .init_resource::<wind::Winds>()
             .init_resource::<build::plan::PlanCache>()
             .init_resource::<frame::StepNumber>()
@@ -142,7 +146,9 @@ impl Plugin for ClothPlugin {
                     )
                         .chain()
                         .in_set(ClothSystems::Gather),
-                    (collider::changes::find_changes, simulate::step_cloths).chain().in_set(ClothSystems::Simulate),
+                    (changes::find_changes, simulate::step_cloths, changes::forget_changes)
+                        .chain()
+                        .in_set(ClothSystems::Simulate),
                     simulate::report_steps.in_set(ClothSystems::Finalize),
                 ),
             )

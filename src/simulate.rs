@@ -15,7 +15,7 @@ mod sleep;
 
 use crate::{
     cloth::{ClothSolver, InForce},
-    frame::{self, ClothRun},
+    frame::{self, ClothRun, StepNumber},
     solver::{self, Member, Particles, Scratch, StepContext, StepReach, StepReport, Topology},
     state::{
         BodyPush, ClothFellAsleep, ClothReport, ClothReset, ClothState, ClothStatus, ClothWokeUp, ResetCause, Sleep,
@@ -58,7 +58,7 @@ pub(crate) struct Surroundings<'w> {
 pub(crate) fn step_cloths(
     mut cloths: Query<Stepped>,
     run: Res<ClothRun>,
-    time: Res<Time>,
+    (time, step): (Res<Time>, Res<StepNumber>),
     surroundings: Surroundings,
     scratch_pool: Local<ScratchPool>,
     _main_thread: NonSendMarker,
@@ -70,7 +70,8 @@ pub(crate) fn step_cloths(
         warn_once!("ClothGravity isn't finite: cloth has no gravity until it is; set it to a finite acceleration");
         Vec3::ZERO
     };
-    let running: Vec<_> = cloths.iter_mut().filter(|cloth| cloth.status.is_running()).collect();
+    let mut running: Vec<_> = cloths.iter_mut().filter(|cloth| cloth.status.is_running()).collect();
+    running.iter_mut().for_each(|cloth| cloth.sleep.begin_step(*step));
     let (dt, pool) = (time.delta_secs(), frame::pool(run.parallel));
     let mut groups = meeting::group(running, dt);
     groups.retain_mut(|group| dt <= 0.0 || !sleep::sleep_on(group, &surroundings));

@@ -3,7 +3,10 @@
 use bevy::{math::Vec3A, prelude::*};
 
 use super::{ClothState, ClothStatus, StepInput};
-use crate::solver::StepReach;
+use crate::{
+    frame::{FromLatestStep, StepNumber},
+    solver::StepReach,
+};
 
 /// A cloth sleeps once none of its particles has gone farther than this, m, ...
 const MOVED: f32 = 1e-4;
@@ -49,9 +52,19 @@ pub(crate) struct Sleep {
     pub reach: Option<StepReach>,
     /// Whether the game has been told that it is asleep.
     pub is_told: bool,
+    /// The latest step that it was there in.
+    seen: FromLatestStep<()>,
 }
 
 impl Sleep {
+    /// Begins a step. What was disabled or gone in the step before doesn't know what it has missed, and can't sleep on.
+    pub fn begin_step(&mut self, step: StepNumber) {
+        if self.seen.get(step).is_none() {
+            self.reach = None;
+        }
+        self.seen.set(step, ());
+    }
+
     /// Takes note of a step of `dt` seconds. True where the cloth has been at rest for long enough to sleep.
     pub fn note_step(&mut self, state: &ClothState, dt: f32) -> bool {
         let position = &state.particles.position;

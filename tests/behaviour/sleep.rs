@@ -1,6 +1,6 @@
 //! Cloth at rest sleeps until something changes near it.
 
-use bevy::prelude::*;
+use bevy::{ecs::entity_disabling::Disabled, prelude::*};
 use bevy_drape::prelude::*;
 
 use crate::common::*;
@@ -155,6 +155,23 @@ fn an_obstacle_wakes_it_when_it_moves_or_goes() {
     get_mut::<ClothCollider>(&mut app, under).friction = 1.0;
     let_sleep(&mut app, cloth);
     app.world_mut().despawn(under);
+    run(&mut app, 30);
+    assert!(!is_asleep(&app, cloth) && place(&app, cloth, 84).y < -0.5, "it falls");
+}
+
+#[test]
+fn one_that_was_disabled_looks_anew_at_what_is_around() {
+    let mut app = app();
+    let ball = (ClothCollider::from(Sphere::new(0.2)), Transform::from_xyz(0.0, -0.2, 0.0));
+    let ball = app.world_mut().spawn(ball).id();
+    let lying = uneven(ClothGrid::new(0.6, 0.6, 13, 13).lying(), 0.25);
+    let cloth = spawn_cloth(&mut app, lying, Fabric::DENIM);
+    let_sleep(&mut app, cloth);
+    app.world_mut().entity_mut(cloth).insert(Disabled);
+    run(&mut app, 2);
+    app.world_mut().despawn(ball);
+    run(&mut app, 2);
+    app.world_mut().entity_mut(cloth).remove::<Disabled>();
     run(&mut app, 30);
     assert!(!is_asleep(&app, cloth) && place(&app, cloth, 84).y < -0.5, "it falls");
 }

@@ -32,7 +32,8 @@ impl ObstacleChanges {
         self.known.iter_mut().for_each(|(_, _, obstacle)| obstacle.shift(by.into()));
     }
 
-    /// Compares with the obstacles of the coming step.
+    /// Compares with the obstacles of the coming step. Both come in the order of their entities, but for those of engines, which stand
+    /// behind the others: where one comes or goes, some of these may be told too.
     fn follow(&mut self, now: &[(Entity, u32, Obstacle)]) {
         self.changed.clear();
         let (mut old, mut new) = (self.known.iter().peekable(), now.iter().peekable());
@@ -60,6 +61,12 @@ impl ObstacleChanges {
     }
 }
 
+/// Drops the obstacles that have changed once cloth has been stepped: they share points with skinned meshes, which are written anew
+/// before the next step.
+pub(crate) fn forget_changes(mut changes: ResMut<ObstacleChanges>) {
+    changes.changed.clear();
+}
+
 /// Finds which obstacles have changed since the step before, in a step in which time goes on.
 pub(crate) fn find_changes(obstacles: Res<Obstacles>, mut changes: ResMut<ObstacleChanges>, time: Res<Time>) {
     if time.delta_secs() > 0.0 {
@@ -78,8 +85,12 @@ mod tests {
     }
 
     fn places(changes: &mut ObstacleChanges, now: &[(Entity, u32, Obstacle)]) -> Vec<f32> {
-        changes.follow(now);
-        changes.changed.iter().map(|(_, obstacle)| obstacle.end.translation.x).collect()
+        let mut now = now.to_vec();
+        now.sort_unstable_by_key(|&(entity, ..)| entity);
+        changes.follow(&now);
+        let mut places: Vec<f32> = changes.changed.iter().map(|(_, obstacle)| obstacle.end.translation.x).collect();
+        places.sort_unstable_by(f32::total_cmp);
+        places
     }
 
     #[test]

@@ -56,3 +56,37 @@ fn root(parents: &mut [u32], mut i: u32) -> u32 {
     }
     i
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether triangles are one patch.
+    fn are_one(triangles: &[[u32; 3]]) -> bool {
+        let fans = fans(triangles);
+        are_connected(&fans, &mut vec![0; fans.as_flattened().len()])
+    }
+
+    #[test]
+    fn triangles_beside_an_edge_that_are_wound_alike_are_one_patch() {
+        assert!(are_one(&[]) && are_one(&[[0, 1, 2]]));
+        assert!(are_one(&[[0, 1, 2], [2, 1, 3]]));
+        assert!(!are_one(&[[0, 1, 2], [1, 2, 3]]), "one faces the other way");
+        assert!(are_one(&[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]]), "a fan that closes");
+    }
+
+    #[test]
+    fn layers_that_share_a_corner_or_a_third_triangle_are_several() {
+        assert!(!are_one(&[[0, 1, 2], [3, 4, 5]]), "nothing is shared");
+        assert!(!are_one(&[[0, 1, 2], [2, 3, 4]]), "a corner is");
+        assert!(!are_one(&[[0, 1, 2], [2, 1, 3], [2, 1, 4]]), "three are at an edge");
+    }
+
+    #[test]
+    fn a_corner_has_as_many_fans_as_layers_meet_there() {
+        let [one, other, apart] = fans(&[[0, 1, 2], [0, 2, 3], [0, 4, 5]])[..] else { panic!("three triangles") };
+        assert_eq!(one[0], other[0]);
+        assert_ne!(one[0], apart[0]);
+        assert_eq!((one[2], one[1] == other[1]), (other[1], false));
+    }
+}
