@@ -56,18 +56,22 @@ fn cloth_of_every_kind_falls_asleep() {
     let pinned = || Pins::edge(ClothEdge::Top);
     let lying = ClothGrid::new(0.6, 0.6, 13, 13).lying();
     let ball = Sphere::new(0.2).mesh().ico(8).unwrap();
-    let (above_ball, above_ground) = (Vec3::new(10.0, 0.25, 0.0), Vec3::NEG_Y * 1.75);
-    let kinds: [(&str, Mesh, Pins, Vec3); 6] = [
+    let (above_ball, above_table, above_ground) =
+        (Vec3::new(10.0, 0.25, 0.0), Vec3::new(20.0, 0.25, 0.0), Vec3::NEG_Y * 1.75);
+    let kinds: [(&str, Mesh, Pins, Vec3); 7] = [
         ("rows and columns", GRID.into(), pinned(), Vec3::ZERO),
         ("triangles", uneven(GRID, 0.25), pinned(), Vec3::ZERO),
         ("a seam", seamed_strip(), Pins::indices([0, 1]), Vec3::ZERO),
         ("a closed ball on the ground", ball, Pins::default(), above_ground),
         ("on a ball", lying.into(), Pins::default(), above_ball),
         ("triangles on a ball", uneven(lying, 0.25), Pins::default(), above_ball),
+        ("triangles on a table", uneven(ClothGrid::new(0.8, 0.8, 33, 33).lying(), 0.25), Pins::default(), above_table),
     ];
     for (kind, mesh, pins, place) in kinds {
         let mut app = app();
         app.world_mut().spawn((ClothCollider::from(Sphere::new(0.2)), Transform::from_xyz(10.0, 0.0, 0.0)));
+        let table = ClothCollider::from(Cuboid::new(0.4, 0.4, 0.4));
+        app.world_mut().spawn((table, Transform::from_xyz(20.0, 0.0, 0.0)));
         app.world_mut().spawn((ClothCollider::from(InfinitePlane3d::default()), Transform::from_xyz(0.0, -2.0, 0.0)));
         let cloth = spawn_cloth(&mut app, mesh, (pins, Transform::from_translation(place)));
         let time = time_to_sleep(&mut app, cloth, 60.0);
