@@ -80,7 +80,7 @@ pub struct Cloth {
     /// [`ClothSprings`](crate::prelude::ClothSprings) on a mesh without rows and columns at least 8, three for each ten vertices
     /// along a side, and up to 32 where triangles are narrow; at least 8 near obstacles, in a hand and without tethers; half as
     /// many more with [`SelfCollision::Robust`], 16 at least; three times as many, 32 at least, near solids with edges, and thin
-    /// ones, and twice that near tips, of which implicit steps take no more and 32. With [`ClothSolver::Xpbd`] for 8.
+    /// ones, and twice that near tips. Implicit steps take no more near edges, and 32 near tips. With [`ClothSolver::Xpbd`] for 8.
     #[reflect(@Parameter::within("", (1.0, 10_000.0), (1.0, 64.0)).whole().entered((1.0, 1000.0)))]
     pub substeps: Option<u32>,
     /// Multigrid passes of [`ClothSolver::Strands`] in each substep: stride and iterations of each coarse level. Only cloth

@@ -15,7 +15,7 @@ use crate::{
 /// Whether cloths that may touch each other all sleep on through the coming step. Else all of them are awake from now on.
 pub(super) fn sleep_on(cloths: &mut [SteppedItem], surroundings: &Surroundings) -> bool {
     let is_left_alone =
-        |cloth: &SteppedItem| cloth.sleep.reach.as_ref().is_some_and(|reach| !cloth.is_disturbed(reach, surroundings));
+        |cloth: &SteppedItem| cloth.sleep.reach.is_some_and(|reach| !cloth.is_disturbed(&reach, surroundings));
     let all_sleep = cloths.iter().all(is_left_alone);
     for cloth in cloths.iter_mut().filter(|cloth| *cloth.status == ClothStatus::Asleep) {
         if all_sleep {
@@ -49,7 +49,7 @@ impl SteppedItem<'_, '_> {
     /// sleep.
     fn rests_alone(&self, surroundings: &Surroundings) -> Option<StepReach> {
         let pushes_bodies = self.input.obstacles.iter().any(|obstacle| obstacle.body.is_some());
-        if self.is_sleeping_disabled || pushes_bodies || self.report.is_taken_back {
+        if pushes_bodies || self.report.is_taken_back {
             return None;
         }
         let ctx = StepContext {

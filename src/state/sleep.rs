@@ -8,13 +8,13 @@ use crate::{
     solver::StepReach,
 };
 
-/// A cloth sleeps once none of its particles has gone farther than this, m, ...
+/// Way of a particle, m, up to which it counts as at rest.
 const MOVED: f32 = 1e-4;
 
-/// ... for this long, s.
+/// Time, s, after which a cloth sleeps whose particles are all at rest.
 const SLEEPS_AFTER: f32 = 0.5;
 
-/// Forbids a cloth to sleep: next to [`Cloth`](crate::prelude::Cloth), for one that the game reads or pushes in ways of its own.
+/// Keeps a cloth from falling asleep. Goes next to its [`Cloth`](crate::prelude::Cloth), and wakes one that is asleep.
 ///
 /// Without it, a cloth falls [asleep](ClothStatus::Asleep) once nothing about it has moved for half a second.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]

@@ -71,6 +71,23 @@ fn a_body_falls_onto_a_held_cloth_and_stays_there() {
 }
 
 #[test]
+fn a_cloth_that_holds_a_body_never_sleeps() {
+    for engine in BOTH {
+        let mut app = engine.app();
+        let corners = Pins::indices([0, 8, 8 * 9, 9 * 9 - 1]);
+        let grid = ClothGrid::new(1.0, 1.0, 9, 9).lying();
+        let holding = spawn_cloth(&mut app, grid, (Fabric { damping: 4.0, ..default() }, corners.clone()));
+        let away = Transform::from_xyz(5.0, 0.0, 0.0);
+        let empty = spawn_cloth(&mut app, grid, (Fabric { damping: 4.0, ..default() }, corners, away));
+        let ball = engine.dynamic(&mut app, &Form::Ball(0.12), MASS, Transform::from_xyz(0.02, 0.2, 0.03));
+        run(&mut app, 1200);
+        assert_eq!(*get::<ClothStatus>(&app, empty), ClothStatus::Asleep, "{engine:?}");
+        assert_eq!(*get::<ClothStatus>(&app, holding), ClothStatus::Ready, "{engine:?}");
+        assert!(get::<Transform>(&app, ball).translation.y > -0.4, "{engine:?}: it is held");
+    }
+}
+
+#[test]
 fn a_heavy_body_between_cloth_and_ground_stays_out_of_the_ground() {
     for engine in BOTH {
         let mut app = engine.app();

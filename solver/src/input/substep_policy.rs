@@ -59,7 +59,7 @@ impl SubstepPolicy {
     const MORE_WITH_SHARP: f32 = 3.0;
 
     /// The most that something sharp asks for where contact with it is solved along with the cloth. 8 hold uneven sheets that fall
-    /// on the corner of a box, or are met by a ball of the size of a cell at 30 m/s, as well as 32 do; but a tenth of a cell comes
+    /// on the corner of a box, or are met by a ball of the size of a cell at 30 m/s, as well as 32 do; but a smaller ball comes
     /// through with fewer than 32.
     const MOST_SOLVED_ALONG: f32 = 64.0;
 

@@ -50,19 +50,21 @@ fn measure(mut diagnostics: Diagnostics, cloths: Query<(&ClothState, &ClothRepor
     if time.delta_secs() <= 0.0 {
         return;
     }
-    let ready = || cloths.iter().filter(|(.., status)| status.is_running());
+    let running = || cloths.iter().filter(|(.., status)| status.is_running());
+    // What a sleeper's latest step did is over.
+    let awake = || running().filter(|(.., status)| **status == ClothStatus::Ready);
+    let latest = || awake().filter_map(|(_, report, _)| report.latest());
     diagnostics.add_measurement(&ClothDiagnosticsPlugin::STEP_TIME, || {
-        ready().map(|(_, report, _)| report.step_time().as_secs_f64() * 1e3).sum()
+        running().map(|(_, report, _)| report.step_time().as_secs_f64() * 1e3).sum()
     });
-    diagnostics.add_measurement(&ClothDiagnosticsPlugin::CLOTHS, || ready().count() as f64);
+    diagnostics.add_measurement(&ClothDiagnosticsPlugin::CLOTHS, || running().count() as f64);
     diagnostics.add_measurement(&ClothDiagnosticsPlugin::PARTICLES, || {
-        ready().map(|(state, ..)| state.particle_count() as f64).sum()
+        running().map(|(state, ..)| state.particle_count() as f64).sum()
     });
     diagnostics.add_measurement(&ClothDiagnosticsPlugin::SUBSTEPS, || {
-        let most = ready().filter_map(|(_, report, _)| report.latest()).map(|latest| latest.substeps).max();
+        let most = latest().map(|latest| latest.substeps).max();
         f64::from(most.unwrap_or(0))
     });
-    diagnostics.add_measurement(&ClothDiagnosticsPlugin::CONTACTS, || {
-        ready().filter_map(|(_, report, _)| report.latest()).map(|latest| f64::from(latest.contacts)).sum()
-    });
+    diagnostics
+        .add_measurement(&ClothDiagnosticsPlugin::CONTACTS, || latest().map(|latest| f64::from(latest.contacts)).sum());
 }

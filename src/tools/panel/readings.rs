@@ -37,8 +37,8 @@ const WEAVE: Naming = naming(
 );
 const SUBSTEPS: Naming = naming(
     "Substeps taken",
-    "Substeps of the latest step, and why so many. Of several cloths, those of the one that took most. A cloth at rest is asleep, and takes none, until \
-     something changes near it.",
+    "Substeps of the latest step, and why so many. Of several cloths, those of the one that took most. A cloth at rest is \
+     asleep, and takes none, until something changes near it.",
 );
 const CONTACTS: Naming = naming(
     "Contacts",
