@@ -16,7 +16,6 @@ use crate::{
             obstacle::{ObstaclePoint, ObstacleSearch},
             pair::{FeatureContact, FeaturePoints},
             predict::PredictedPair,
-            search::SEARCHES,
             tangle::Tangle,
             triangle_pack::TrianglePack,
         },
@@ -194,9 +193,8 @@ pub struct FeatureContacts {
     fixed: Vec<ObstaclePoint>,
     body_ways: Vec<PredictedBodyMotion>,
     at_obstacle: ObstacleSearch,
-    /// Whether there has been a search in this step, and how many more there may be.
+    /// Whether there has been a search in this step.
     is_begun: bool,
-    searches_left: u32,
     /// Whether a cloth meets itself or another one, whether one is near something sharp, and whether one has an implicit step, which
     /// solves its contact along.
     collides: bool,
@@ -223,8 +221,6 @@ impl FeatureContacts {
         for (number, cloth) in cloths.iter().enumerate() {
             self.is_sharp |= cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
         }
-        // What is sharp goes through cloth that it is found too late at.
-        self.searches_left = if self.is_sharp || self.is_solved_along { u32::MAX } else { SEARCHES };
         self.collides || self.is_sharp
     }
 

@@ -29,7 +29,7 @@ const BENT: [u64; 1] = [0x0a147195f5e25ce5];
 const CONTACT: [u64; 4] = [0x41c38947138fd2cb, 0xf0529a38e4bbc032, 0xcc7fb1ef65bdb53b, 0xe4d07bf40747a555];
 
 /// Triangles by both methods, particles as balls.
-const SELF_COLLISION: [u64; 3] = [0xadc68385de1c467c, 0x5fb384f93dfff54b, 0xc3e2b5b9c0af153f];
+const SELF_COLLISION: [u64; 3] = [0xa4fbb64762e1b439, 0x16404ddb9e8ccdd3, 0x92335f30dfbcfdde];
 
 /// By both methods.
 const MOVING_BODY: [u64; 2] = [0x7478d81f77969594, 0x10ad3d93ed2c5968];

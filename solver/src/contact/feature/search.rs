@@ -10,12 +10,6 @@ use crate::{
     particles::lanes::Lanes,
 };
 
-/// Searches in a step at most, where nothing is sharp.
-///
-/// The last one is for what is left of the step. With fewer, flags in a storm pass through themselves; with one in every substep,
-/// piles are no better, and cost twice as much.
-pub(super) const SEARCHES: u32 = 6;
-
 /// How far a particle may come off its way towards other cloth, m: this much, and a share of the way by which it goes past the others
 /// until the search ends; a share of the mean edge at most. The less, the fewer features are near each other.
 const SLACK: f32 = 0.0005;
@@ -40,10 +34,9 @@ impl FeatureContacts {
     /// Looks for pairs in what is left of a step of `dt` seconds, of which the part `span` (0..=1) is going on, if it is time to.
     pub(super) fn search(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, dt: f32) {
         self.take_places(cloths);
-        if self.is_begun && (self.searches_left == 0 || !self.is_outdated(cloths, &span)) {
+        if self.is_begun && !self.is_outdated(cloths, &span) {
             return;
         }
-        self.searches_left -= 1;
         if core::mem::replace(&mut self.is_begun, true) {
             self.keep_loads(cloths);
         }
@@ -88,10 +81,9 @@ impl FeatureContacts {
 
     /// Whether there should be another search before the part `span` of the step goes on.
     fn is_outdated(&self, cloths: &[impl ClothInStep], span: &Range<f32>) -> bool {
-        // Where edges pierce cloth changes as it parts.
-        let is_tangle_old = || !self.tangles.is_empty() && span.start >= self.searched.start + 1.0 / SEARCHES as f32;
+        // Which way out of a tangle leads changes as it parts.
         span.end > self.searched.end
-            || is_tangle_old()
+            || !self.tangles.is_empty()
             || self.collides && !self.is_solved_along && self.has_come_off_to_cloth(cloths, span.end)
             || (self.is_sharp || self.is_solved_along) && self.has_come_off(span.start)
             || self.has_body_come_off(cloths, span.start)
@@ -114,12 +106,11 @@ impl FeatureContacts {
     }
 
     /// The moment of the step (0..=1) up to which a search is worth while: the farther things move past each other, the
-    /// more is near their ways, and within the length of an edge that is little. The last search is for all that is left.
+    /// more is near their ways, and within the length of an edge that is little.
     fn horizon(&self, cloths: &[impl ClothInStep], span: Range<f32>, dt: f32) -> f32 {
         let edge = cloths.iter().map(|cloth| cloth.surface().mean_edge).fold(f32::INFINITY, f32::min);
         let share = edge / (self.fastest(cloths, dt) * dt).max(f32::MIN_POSITIVE);
-        let least = (1.0 - span.start) / (self.searches_left as f32 + 1.0);
-        (span.start + share.max(least)).clamp(span.end, 1.0)
+        (span.start + share).clamp(span.end, 1.0)
     }
 
     fn mean_velocity(&self) -> Vec3A {
