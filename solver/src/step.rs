@@ -109,9 +109,6 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut FeatureContacts) {
         }
         solve_sheets(cloths, touch.between_mut());
         cloths.iter_mut().for_each(Running::settle);
-        if touch.comes_after_obstacles() {
-            cloths.iter_mut().for_each(|cloth| cloth.project(span.clone()));
-        }
         if let Some(Substep { h, ctx, .. }) = first {
             let touched = touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
             // Whose they are isn't known: they count once.

@@ -1,7 +1,7 @@
 //! What cloths touch with their triangles and edges: themselves, each other, and what is sharp.
 //!
 //! A search finds the pairs of features that may touch, with the way that everything is on; substeps work on those pairs.
-//! As soon as a particle comes too far off its way there is another search.
+//! As soon as a particle comes off its way there is another search.
 
 use core::ops::Range;
 
@@ -13,11 +13,11 @@ use crate::{
         body::Bodies,
         feature::{
             body_motion::PredictedBodyMotion,
-            obstacle::{ObstaclePoint, ObstacleSearch},
+            narrow_phase::Displacements,
+            obstacle::{ClothMotion, ObstaclePoint, ObstacleSearch},
             pair::{FeatureContact, FeaturePoints},
             predict::PredictedPair,
             tangle::Tangle,
-            triangle_pack::TrianglePack,
         },
     },
     geometry::bvh::{TriangleBvh, bounds::BvhBounds, traversal::Traversal},
@@ -36,10 +36,20 @@ pub(crate) mod obstacle_geometry;
 pub(crate) mod pair;
 pub(crate) mod positions;
 pub(crate) mod predict;
-mod search;
 pub(crate) mod sharp_feature_cache;
 pub(crate) mod tangle;
-pub(crate) mod triangle_pack;
+
+/// How far particles may come off their way before there is another search: this share of the mean edge at most.
+const SLACK: f32 = 0.2;
+
+/// The same where cloth is at rest, m, and as a share of the way by which parts of it move past each other: the less, the
+/// fewer layers of a pile are near each other, and the sooner there is another search.
+const SLACK_AT_REST: f32 = 0.0005;
+const SLACK_OF_WAY: f32 = 0.25;
+
+/// Share of the fall that is taken to happen: nobody knows what is held up, and so neither that comes off its way, nor what
+/// falls.
+const FALL: f32 = 0.5;
 
 /// How deep the inside of a triangle may sink into what isn't sharp: this much at least, m, and this share of the distance
 /// that particles keep. What is seen of the cloth stays outside.
@@ -177,12 +187,9 @@ pub struct FeatureContacts {
     way: Vec<Vec3A>,
     /// The part of the step that the search was for.
     searched: Range<f32>,
-    /// By how much each particle may come off its way towards other cloth, and those of each cloth towards obstacles, m.
+    /// By how much the particles of each cloth may come off their ways, m.
     slack: Vec<f32>,
-    obstacle_slack: Vec<f32>,
-    /// Boxes around the triangles of each cloth, and its leaves.
     places: Vec<BvhBounds>,
-    packs: Vec<Vec<TrianglePack>>,
     pairs: Vec<FeatureContact>,
     tangles: Vec<Tangle>,
     is_tangled: Vec<bool>,
@@ -195,11 +202,6 @@ pub struct FeatureContacts {
     at_obstacle: ObstacleSearch,
     /// Whether there has been a search in this step.
     is_begun: bool,
-    /// Whether a cloth meets itself or another one, whether one is near something sharp, and whether one has an implicit step, which
-    /// solves its contact along.
-    collides: bool,
-    is_sharp: bool,
-    is_solved_along: bool,
     /// Pairs that were to touch in this substep.
     predicted: Vec<PredictedPair>,
     /// Those of two cloths, and their numbers.
@@ -215,24 +217,118 @@ impl FeatureContacts {
         self.is_begun = false;
         self.between.predicted.clear();
         self.forget();
-        self.collides = cloths.iter().any(ClothInStep::collides);
-        self.is_solved_along = cloths.iter().any(ClothInStep::is_implicit);
-        self.is_sharp = false;
+        let mut is_needed = cloths.iter().any(ClothInStep::collides);
         for (number, cloth) in cloths.iter().enumerate() {
-            self.is_sharp |= cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
+            is_needed |= cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
         }
-        self.collides || self.is_sharp
-    }
-
-    /// Whether cloths are to be kept out of obstacles before they meet, too: layers meet where obstacles leave them, and one that is
-    /// pushed out of an obstacle afterwards goes through the next. Implicit steps solve both along with the cloth.
-    pub fn comes_after_obstacles(&self) -> bool {
-        self.collides && !self.is_solved_along
+        is_needed
     }
 
     fn forget(&mut self) {
         self.pairs.clear();
         self.tangles.clear();
+    }
+
+    /// Looks for pairs in what is left of a step of `dt` seconds, of which the share `now` is over, if it is time to.
+    fn search(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, dt: f32) {
+        self.take_places(cloths);
+        let is_known = self.is_begun && span.end <= self.searched.end && self.tangles.is_empty();
+        if is_known && !self.has_come_off(span.start) && !self.has_body_come_off(cloths, span.start) {
+            return;
+        }
+        if core::mem::replace(&mut self.is_begun, true) {
+            self.keep_loads(cloths);
+        }
+        self.take_velocities(cloths);
+        let now = span.start;
+        self.searched = now..self.horizon(cloths, span, dt);
+        self.take_ways(cloths, dt);
+        self.forget();
+        self.fixed.clear();
+        self.body_ways.clear();
+        self.is_tangled.clear();
+        self.is_tangled.resize(self.start.len(), false);
+        if cloths.iter().any(ClothInStep::collides) {
+            self.search_cloths(cloths);
+        }
+        for (number, cloth) in cloths.iter().enumerate() {
+            self.note_bodies(number, cloth, dt);
+            if !cloth.is_near() {
+                continue;
+            }
+            let particles = self.particles(number);
+            let ways = Displacements { position: &self.start[particles.clone()], way: &self.way[particles] };
+            let (first, total) = (self.first[number], self.start.len());
+            let (slack, span) = (self.slack[number], self.searched.clone());
+            let at = ClothMotion { cloth, number, first, total, ways, slack, span, dt };
+            for i in 0..cloth.ctx().obstacles.len() {
+                self.at_obstacle.search(&at, i, &mut self.traversal, (&mut self.fixed, &mut self.pairs));
+            }
+        }
+        let count = self.start.len() + self.fixed.len();
+        for points in [&mut self.points.position, &mut self.points.previous] {
+            points.resize(count, Vec3A::ZERO);
+        }
+        self.points.inverse_mass.resize(count, 0.0);
+        self.recall_loads(cloths);
+    }
+
+    /// Keeps where particles were when the substep began, for a search, and reads their velocities, as ways.
+    fn take_velocities(&mut self, cloths: &[impl ClothInStep]) {
+        let count = self.particle_count();
+        self.start.clear();
+        self.start.extend_from_slice(&self.points.previous[..count]);
+        self.way.resize(count, Vec3A::ZERO);
+        self.points.inverse_mass.clear();
+        for (i, cloth) in cloths.iter().enumerate() {
+            let particles = self.particles(i);
+            let Lanes { order, velocity, .. } = &cloth.lanes();
+            velocity.store(*order, &mut self.way[particles.clone()], cloth.simd_level());
+            let masses = (0..particles.len() as u32).map(|particle| cloth.lanes().inverse_mass(order.slot(particle)));
+            self.points.inverse_mass.extend(masses);
+        }
+    }
+
+    /// The moment of the step (0..=1) up to which a search is worth while: the farther things move past each other, the
+    /// more is near their ways, and within the length of an edge that is little.
+    ///
+    /// Sets by how much particles may come off their ways until then, too.
+    fn horizon(&mut self, cloths: &[impl ClothInStep], span: Range<f32>, dt: f32) -> f32 {
+        let mean = self.way.iter().sum::<Vec3A>() / self.way.len().max(1) as f32;
+        let mut fastest = self.way.iter().map(|velocity| velocity.distance_squared(mean)).fold(0.0, f32::max).sqrt();
+        let mut edge = f32::INFINITY;
+        for cloth in cloths {
+            edge = edge.min(cloth.surface().mean_edge);
+            for obstacle in cloth.ctx().obstacles {
+                let speed = (obstacle.end.translation - obstacle.start.translation) / dt;
+                fastest = fastest.max(speed.distance(mean));
+            }
+        }
+        let share = edge / (fastest * dt).max(f32::MIN_POSITIVE);
+        let end = (span.start + share).clamp(span.end, 1.0);
+        let left = (end - span.start) * dt;
+        let needed = SLACK_AT_REST + SLACK_OF_WAY * fastest * left;
+        self.slack.clear();
+        self.slack.extend(cloths.iter().map(|cloth| {
+            let fall = 0.5 * cloth.ctx().gravity.length() * left * left;
+            (needed + FALL * fall).min(SLACK * cloth.surface().mean_edge)
+        }));
+        end
+    }
+
+    /// Works out how far all particles will come within the time that the search is for.
+    fn take_ways(&mut self, cloths: &[impl ClothInStep], dt: f32) {
+        let share = self.searched.end - self.searched.start;
+        let left = share * dt;
+        for (number, cloth) in cloths.iter().enumerate() {
+            let particles = self.particles(number);
+            let fall = cloth.ctx().gravity * (0.5 * FALL * left * left);
+            let way = &mut self.way[particles];
+            way.iter_mut().for_each(|way| *way = *way * left + fall);
+            for anchor in cloth.ctx().pin_motions {
+                way[anchor.particle as usize] = (anchor.end - anchor.start) * share;
+            }
+        }
     }
 
     /// Keeps features apart within the part `span` (0..=1) of the step, a substep of `h` seconds. Returns the number of
@@ -287,5 +383,17 @@ impl FeatureContacts {
             }
         }
         touched
+    }
+
+    /// Whether a particle was off its way when a substep began, at the moment `now` (0..=1) of the step.
+    fn has_come_off(&self, now: f32) -> bool {
+        let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
+        (0..self.slack.len()).any(|cloth| {
+            let particles = self.particles(cloth);
+            let far = self.slack[cloth] * self.slack[cloth];
+            let ways = self.start[particles.clone()].iter().zip(&self.way[particles.clone()]);
+            let mut ways = ways.zip(&self.points.previous[particles]);
+            ways.any(|((&start, &way), place)| place.distance_squared(start + way * share) > far)
+        })
     }
 }

@@ -68,7 +68,7 @@ impl FeatureContacts {
             let Some(body) = cloths[*cloth].bodies().get(*obstacle) else { return false };
             let translation = from.translation.lerp(to.translation, share);
             let expected = Isometry3d { translation, rotation: from.rotation.lerp(to.rotation, share) };
-            ccd::way_between(&expected, &body.start, *far) > self.obstacle_slack[*cloth]
+            ccd::way_between(&expected, &body.start, *far) > self.slack[*cloth]
         })
     }
 
