@@ -109,13 +109,22 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut FeatureContacts) {
         }
         solve_sheets(cloths, touch.between_mut());
         cloths.iter_mut().for_each(Running::settle);
+        let comes_after_obstacles = touch.comes_after_obstacles();
+        if comes_after_obstacles {
+            cloths.iter_mut().for_each(|cloth| cloth.project(span.clone()));
+        }
+        let mut has_moved = false;
         if let Some(Substep { h, ctx, .. }) = first {
-            let touched = touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
+            let solved = touch.solve(cloths, span.clone(), h, ctx.dt.min(MAX_TIME_STEP));
+            has_moved = solved.has_moved;
             // Whose they are isn't known: they count once.
-            cloths[0].touched = touched;
+            cloths[0].touched = solved.touched;
         }
         for cloth in &mut *cloths {
-            cloth.finish(span.clone());
+            if has_moved || !comes_after_obstacles {
+                cloth.project(span.clone());
+            }
+            cloth.finish();
         }
     }
     touch.keep_loads(cloths);

@@ -1,7 +1,7 @@
 //! What cloths touch with their triangles and edges: themselves, each other, and what is sharp.
 //!
 //! A search finds the pairs of features that may touch, with the way that everything is on; substeps work on those pairs.
-//! As soon as a particle comes off its way there is another search.
+//! As soon as a particle comes too far off its way there is another search.
 
 use core::ops::Range;
 
@@ -13,11 +13,11 @@ use crate::{
         body::Bodies,
         feature::{
             body_motion::PredictedBodyMotion,
-            narrow_phase::Displacements,
-            obstacle::{ClothMotion, ObstaclePoint, ObstacleSearch},
-            pair::{FeatureContact, FeaturePoints},
+            obstacle::{ObstaclePoint, ObstacleSearch},
+            pair::{FeatureContact, FeaturePoints, Touch},
             predict::PredictedPair,
             tangle::Tangle,
+            triangle_pack::LeafPacks,
         },
     },
     geometry::bvh::{TriangleBvh, bounds::BvhBounds, traversal::Traversal},
@@ -36,20 +36,10 @@ pub(crate) mod obstacle_geometry;
 pub(crate) mod pair;
 pub(crate) mod positions;
 pub(crate) mod predict;
+mod search;
 pub(crate) mod sharp_feature_cache;
 pub(crate) mod tangle;
-
-/// How far particles may come off their way before there is another search: this share of the mean edge at most.
-const SLACK: f32 = 0.2;
-
-/// The same where cloth is at rest, m, and as a share of the way by which parts of it move past each other: the less, the
-/// fewer layers of a pile are near each other, and the sooner there is another search.
-const SLACK_AT_REST: f32 = 0.0005;
-const SLACK_OF_WAY: f32 = 0.25;
-
-/// Share of the fall that is taken to happen: nobody knows what is held up, and so neither that comes off its way, nor what
-/// falls.
-const FALL: f32 = 0.5;
+pub(crate) mod triangle_pack;
 
 /// How deep the inside of a triangle may sink into what isn't sharp: this much at least, m, and this share of the distance
 /// that particles keep. What is seen of the cloth stays outside.
@@ -59,6 +49,11 @@ const SINK_OF_DISTANCE: f32 = 0.5;
 /// Edges longer than at rest by this factor are taken for stretched to twice their length: it may come to that before the step
 /// is over.
 const STRETCHED: f32 = 1.25;
+
+/// How often pairs are solved within a substep: once, and again while features of cloth are nearer than they should be by this share
+/// of their distance, since one pair undoes what another did. What is pulled tight, such as a rope, passes through itself otherwise.
+const PASSES: u32 = 4;
+const DEEP: f32 = 0.3;
 
 /// How often pairs with obstacles are solved again within a substep.
 const AGAIN_AT_OBSTACLES: u32 = 8;
@@ -187,9 +182,12 @@ pub struct FeatureContacts {
     way: Vec<Vec3A>,
     /// The part of the step that the search was for.
     searched: Range<f32>,
-    /// By how much the particles of each cloth may come off their ways, m.
+    /// By how much each particle may come off its way towards other cloth, and those of each cloth towards obstacles, m.
     slack: Vec<f32>,
+    obstacle_slack: Vec<f32>,
+    /// Boxes around the triangles of each cloth, and its leaves that are near others.
     places: Vec<BvhBounds>,
+    packs: Vec<LeafPacks>,
     pairs: Vec<FeatureContact>,
     tangles: Vec<Tangle>,
     is_tangled: Vec<bool>,
@@ -202,6 +200,11 @@ pub struct FeatureContacts {
     at_obstacle: ObstacleSearch,
     /// Whether there has been a search in this step.
     is_begun: bool,
+    /// Whether a cloth meets itself or another one, whether one is near something sharp, and whether one has an implicit step, which
+    /// solves its contact along.
+    collides: bool,
+    is_sharp: bool,
+    is_solved_along: bool,
     /// Pairs that were to touch in this substep.
     predicted: Vec<PredictedPair>,
     /// Those of two cloths, and their numbers.
@@ -217,11 +220,19 @@ impl FeatureContacts {
         self.is_begun = false;
         self.between.predicted.clear();
         self.forget();
-        let mut is_needed = cloths.iter().any(ClothInStep::collides);
+        self.collides = cloths.iter().any(ClothInStep::collides);
+        self.is_solved_along = cloths.iter().any(ClothInStep::is_implicit);
+        self.is_sharp = false;
         for (number, cloth) in cloths.iter().enumerate() {
-            is_needed |= cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
+            self.is_sharp |= cloth.is_near() && self.at_obstacle.is_needed(number, cloth);
         }
-        is_needed
+        self.collides || self.is_sharp
+    }
+
+    /// Whether cloths are to be kept out of obstacles before they meet, too: layers meet where obstacles leave them, and one that is
+    /// pushed out of an obstacle afterwards goes through the next. Implicit steps solve both along with the cloth.
+    pub fn comes_after_obstacles(&self) -> bool {
+        self.collides && !self.is_solved_along
     }
 
     fn forget(&mut self) {
@@ -229,118 +240,16 @@ impl FeatureContacts {
         self.tangles.clear();
     }
 
-    /// Looks for pairs in what is left of a step of `dt` seconds, of which the share `now` is over, if it is time to.
-    fn search(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, dt: f32) {
-        self.take_places(cloths);
-        let is_known = self.is_begun && span.end <= self.searched.end && self.tangles.is_empty();
-        if is_known && !self.has_come_off(span.start) && !self.has_body_come_off(cloths, span.start) {
-            return;
-        }
-        if core::mem::replace(&mut self.is_begun, true) {
-            self.keep_loads(cloths);
-        }
-        self.take_velocities(cloths);
-        let now = span.start;
-        self.searched = now..self.horizon(cloths, span, dt);
-        self.take_ways(cloths, dt);
-        self.forget();
-        self.fixed.clear();
-        self.body_ways.clear();
-        self.is_tangled.clear();
-        self.is_tangled.resize(self.start.len(), false);
-        if cloths.iter().any(ClothInStep::collides) {
-            self.search_cloths(cloths);
-        }
-        for (number, cloth) in cloths.iter().enumerate() {
-            self.note_bodies(number, cloth, dt);
-            if !cloth.is_near() {
-                continue;
-            }
-            let particles = self.particles(number);
-            let ways = Displacements { position: &self.start[particles.clone()], way: &self.way[particles] };
-            let (first, total) = (self.first[number], self.start.len());
-            let (slack, span) = (self.slack[number], self.searched.clone());
-            let at = ClothMotion { cloth, number, first, total, ways, slack, span, dt };
-            for i in 0..cloth.ctx().obstacles.len() {
-                self.at_obstacle.search(&at, i, &mut self.traversal, (&mut self.fixed, &mut self.pairs));
-            }
-        }
-        let count = self.start.len() + self.fixed.len();
-        for points in [&mut self.points.position, &mut self.points.previous] {
-            points.resize(count, Vec3A::ZERO);
-        }
-        self.points.inverse_mass.resize(count, 0.0);
-        self.recall_loads(cloths);
-    }
-
-    /// Keeps where particles were when the substep began, for a search, and reads their velocities, as ways.
-    fn take_velocities(&mut self, cloths: &[impl ClothInStep]) {
-        let count = self.particle_count();
-        self.start.clear();
-        self.start.extend_from_slice(&self.points.previous[..count]);
-        self.way.resize(count, Vec3A::ZERO);
-        self.points.inverse_mass.clear();
-        for (i, cloth) in cloths.iter().enumerate() {
-            let particles = self.particles(i);
-            let Lanes { order, velocity, .. } = &cloth.lanes();
-            velocity.store(*order, &mut self.way[particles.clone()], cloth.simd_level());
-            let masses = (0..particles.len() as u32).map(|particle| cloth.lanes().inverse_mass(order.slot(particle)));
-            self.points.inverse_mass.extend(masses);
-        }
-    }
-
-    /// The moment of the step (0..=1) up to which a search is worth while: the farther things move past each other, the
-    /// more is near their ways, and within the length of an edge that is little.
-    ///
-    /// Sets by how much particles may come off their ways until then, too.
-    fn horizon(&mut self, cloths: &[impl ClothInStep], span: Range<f32>, dt: f32) -> f32 {
-        let mean = self.way.iter().sum::<Vec3A>() / self.way.len().max(1) as f32;
-        let mut fastest = self.way.iter().map(|velocity| velocity.distance_squared(mean)).fold(0.0, f32::max).sqrt();
-        let mut edge = f32::INFINITY;
-        for cloth in cloths {
-            edge = edge.min(cloth.surface().mean_edge);
-            for obstacle in cloth.ctx().obstacles {
-                let speed = (obstacle.end.translation - obstacle.start.translation) / dt;
-                fastest = fastest.max(speed.distance(mean));
-            }
-        }
-        let share = edge / (fastest * dt).max(f32::MIN_POSITIVE);
-        let end = (span.start + share).clamp(span.end, 1.0);
-        let left = (end - span.start) * dt;
-        let needed = SLACK_AT_REST + SLACK_OF_WAY * fastest * left;
-        self.slack.clear();
-        self.slack.extend(cloths.iter().map(|cloth| {
-            let fall = 0.5 * cloth.ctx().gravity.length() * left * left;
-            (needed + FALL * fall).min(SLACK * cloth.surface().mean_edge)
-        }));
-        end
-    }
-
-    /// Works out how far all particles will come within the time that the search is for.
-    fn take_ways(&mut self, cloths: &[impl ClothInStep], dt: f32) {
-        let share = self.searched.end - self.searched.start;
-        let left = share * dt;
-        for (number, cloth) in cloths.iter().enumerate() {
-            let particles = self.particles(number);
-            let fall = cloth.ctx().gravity * (0.5 * FALL * left * left);
-            let way = &mut self.way[particles];
-            way.iter_mut().for_each(|way| *way = *way * left + fall);
-            for anchor in cloth.ctx().pin_motions {
-                way[anchor.particle as usize] = (anchor.end - anchor.start) * share;
-            }
-        }
-    }
-
-    /// Keeps features apart within the part `span` (0..=1) of the step, a substep of `h` seconds. Returns the number of
-    /// pairs that touched.
-    pub fn solve(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, h: f32, dt: f32) -> u32 {
+    /// Keeps features apart within the part `span` (0..=1) of the step, a substep of `h` seconds. Returns how
+    /// many touched.
+    pub fn solve(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, h: f32, dt: f32) -> SolvedFeatures {
         if self.is_searched {
             self.read_loads(cloths);
             self.take_places(cloths);
         } else {
             self.search(cloths, span.clone(), dt);
         }
-        let mut touched = 0;
+        let mut solved = SolvedFeatures::default();
         if !(self.pairs.is_empty() && self.tangles.is_empty()) {
             self.lead_fixed(cloths, span.clone());
             self.points.has_parted = false;
@@ -349,30 +258,56 @@ impl FeatureContacts {
             for tangle in &self.tangles {
                 tangle.solve(&mut self.points, most_parted, h);
             }
-            touched = match cloths.iter().any(|cloth| cloth.bodies().is_any()) {
-                true => self.solve_pairs_on_bodies(cloths, span.clone(), most_parted),
-                false => self.solve_pairs(most_parted),
-            };
-            self.give_places(cloths, span);
+            let touched = self.solve_pairs(cloths, span.clone(), most_parted);
+            solved = SolvedFeatures { touched, has_moved: touched > 0 || !self.tangles.is_empty() };
+            if solved.has_moved {
+                self.give_places(cloths, span);
+            }
         }
+        solved
+    }
+
+    /// Solves the pairs until no two features of cloth are deep in each other, and returns how many touched.
+    fn solve_pairs(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, most_parted: f32) -> u32 {
+        let is_on_bodies = cloths.iter().any(|cloth| cloth.bodies().is_any());
+        let passes = if self.is_solved_along { 1 } else { PASSES };
+        self.at_obstacles.clear();
+        let mut touched = 0;
+        for pass in 0..passes {
+            // In the first, what was too near before parts as far as it may.
+            let most_parted = if pass == 0 { most_parted } else { 0.0 };
+            let solved = match is_on_bodies {
+                true => self.solve_each_on_bodies(cloths, span.clone(), most_parted),
+                false => self.solve_each(most_parted, pass == 0),
+            };
+            touched = solved.touched.max(touched);
+            if !solved.is_deep {
+                break;
+            }
+        }
+        self.solve_again_at_obstacles();
         touched
     }
 
-    /// Solves all pairs, and returns how many touched.
-    fn solve_pairs(&mut self, most_parted: f32) -> u32 {
+    /// Solves all pairs, one after the other. The first time, notes those that touched an obstacle.
+    fn solve_each(&mut self, most_parted: f32, is_first: bool) -> SolvedPairs {
         let count = self.particle_count() as u32;
         let Self { pairs, points, at_obstacles, .. } = self;
-        let mut touched = 0;
-        at_obstacles.clear();
+        let mut solved = SolvedPairs::default();
         for (i, pair) in pairs.iter_mut().enumerate() {
-            if pair.solve(points, most_parted, None).is_some() {
-                touched += 1;
-                if pair.points.iter().any(|&point| point >= count) {
-                    at_obstacles.push(i as u32);
-                }
+            let Some(touch) = pair.solve(points, most_parted, None) else { continue };
+            let is_at_obstacle = pair.points.iter().any(|&point| point >= count);
+            solved.note(pair, &touch, is_at_obstacle);
+            if is_at_obstacle && is_first {
+                at_obstacles.push(i as u32);
             }
         }
-        // What is sharp gives no way, and so one pair undoes what another did, more than between cloths.
+        solved
+    }
+
+    /// Solves pairs with obstacles again: what is sharp gives no way, and so one pair undoes what another did, more than between cloths.
+    fn solve_again_at_obstacles(&mut self) {
+        let Self { pairs, points, at_obstacles, .. } = self;
         for _ in 0..AGAIN_AT_OBSTACLES {
             let mut is_any_left = false;
             for &i in &*at_obstacles {
@@ -382,18 +317,30 @@ impl FeatureContacts {
                 break;
             }
         }
-        touched
     }
+}
 
-    /// Whether a particle was off its way when a substep began, at the moment `now` (0..=1) of the step.
-    fn has_come_off(&self, now: f32) -> bool {
-        let share = (now - self.searched.start) / (self.searched.end - self.searched.start);
-        (0..self.slack.len()).any(|cloth| {
-            let particles = self.particles(cloth);
-            let far = self.slack[cloth] * self.slack[cloth];
-            let ways = self.start[particles.clone()].iter().zip(&self.way[particles.clone()]);
-            let mut ways = ways.zip(&self.points.previous[particles]);
-            ways.any(|((&start, &way), place)| place.distance_squared(start + way * share) > far)
-        })
+/// What keeping features apart came to.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SolvedFeatures {
+    /// How many pairs touched.
+    pub touched: u32,
+    /// Whether a particle was moved.
+    pub has_moved: bool,
+}
+
+/// What solving all pairs once came to.
+#[derive(Clone, Copy, Debug, Default)]
+struct SolvedPairs {
+    /// How many touched.
+    touched: u32,
+    /// Whether features of cloth were as [`DEEP`] in each other.
+    is_deep: bool,
+}
+
+impl SolvedPairs {
+    fn note(&mut self, pair: &FeatureContact, touch: &Touch, is_at_obstacle: bool) {
+        self.touched += 1;
+        self.is_deep |= !is_at_obstacle && touch.depth > DEEP * pair.distance;
     }
 }

@@ -184,6 +184,16 @@ impl TriangleBvh {
         node as usize >= self.leaves
     }
 
+    /// The leaves, in their order.
+    pub fn leaves(&self) -> Range<u32> {
+        self.leaves as u32..2 * self.leaves as u32
+    }
+
+    /// Which of the leaves a node is, from 0 on.
+    pub fn leaf_number(&self, node: u32) -> usize {
+        node as usize - self.leaves
+    }
+
     /// The triangles of a node.
     fn of_node(&self, node: u32) -> Range<usize> {
         let (mut first, mut last) = (node, node);

@@ -147,6 +147,7 @@ impl<'a> Running<'a> {
         let goes_on = i + 1 < self.substeps && ctx.grabs.is_empty() && !is_renewed;
         self.has_moved = goes_on && ctx.settings.method != Method::Explicit;
         self.is_finished = false;
+        self.contacts = 0;
         scratch.implicit.contacts.predicted.clear();
     }
 
@@ -192,17 +193,23 @@ impl<'a> Running<'a> {
         body_attachments.settle(lanes, substep.ctx, substep.h);
     }
 
-    /// Keeps the cloth out of obstacles and ends the substep.
-    pub fn finish(&mut self, span: Range<f32>) {
+    /// Keeps the cloth out of obstacles in the part `span` of the step.
+    pub fn project(&mut self, span: Range<f32>) {
+        let Self { scratch, substep, .. } = self;
+        if substep.is_near {
+            let Scratch { lanes, broad_phase, faces, bodies, simd_level, .. } = &mut **scratch;
+            let Substep { ctx, h, .. } = *substep;
+            let pushed = contact::project(lanes, (broad_phase, faces, bodies), ctx, span, h, *simd_level);
+            self.contacts = self.contacts.max(pushed);
+        }
+    }
+
+    /// Ends the substep.
+    pub fn finish(&mut self) {
         let Self { scratch, substep, .. } = self;
         let ctx = substep.ctx;
-        if substep.is_near {
-            self.contacts = {
-                let Scratch { lanes, broad_phase, faces, bodies, implicit, simd_level, .. } = &mut **scratch;
-                let pushed = contact::project(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, *simd_level);
-                let held = if substep.implicit.is_some() { implicit.contacts.len() as u32 } else { 0 };
-                pushed.max(held)
-            };
+        if substep.is_near && substep.implicit.is_some() {
+            self.contacts = self.contacts.max(scratch.implicit.contacts.len() as u32);
         }
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
         let is_constrained = ctx.settings.method != Method::Explicit || substep.touches || !ctx.grabs.is_empty();

@@ -29,10 +29,10 @@ const BENT: [u64; 1] = [0x0a147195f5e25ce5];
 const CONTACT: [u64; 4] = [0x41c38947138fd2cb, 0xf0529a38e4bbc032, 0xcc7fb1ef65bdb53b, 0xe4d07bf40747a555];
 
 /// Triangles by both methods, particles as balls.
-const SELF_COLLISION: [u64; 3] = [0x12ac2e2217ecd4f9, 0x2c371e0d0e0e8c68, 0x14749c9ad5bfcbdc];
+const SELF_COLLISION: [u64; 3] = [0x7707c266cf4643e5, 0x1abf5da955c9997f, 0x9862477959af5be7];
 
 /// By both methods.
-const MOVING_BODY: [u64; 2] = [0xb7a170d8ac596d6b, 0x1dd8cc0895aeacbf];
+const MOVING_BODY: [u64; 2] = [0x0e3864214803d28d, 0xd4eb7442f8be9bf5];
 
 const FRAMES: u32 = 300;
 

@@ -8,7 +8,7 @@ use crate::{
     contact::{
         body::MovedBody,
         feature::{
-            ClothInStep, FeatureContacts,
+            ClothInStep, FeatureContacts, SolvedPairs,
             obstacle::ObstaclePoint,
             pair::{BodyContact, Impulse},
         },
@@ -68,7 +68,7 @@ impl FeatureContacts {
             let Some(body) = cloths[*cloth].bodies().get(*obstacle) else { return false };
             let translation = from.translation.lerp(to.translation, share);
             let expected = Isometry3d { translation, rotation: from.rotation.lerp(to.rotation, share) };
-            ccd::way_between(&expected, &body.start, *far) > self.slack[*cloth]
+            ccd::way_between(&expected, &body.start, *far) > self.obstacle_slack[*cloth]
         })
     }
 
@@ -84,24 +84,27 @@ impl FeatureContacts {
         }
     }
 
-    /// Solves all pairs, one after the other, and pushes the bodies among the obstacles. Returns how many touched.
-    pub(crate) fn solve_pairs_on_bodies(
+    /// Solves all pairs, one after the other, and pushes the bodies among the obstacles.
+    pub(super) fn solve_each_on_bodies(
         &mut self,
         cloths: &mut [impl ClothInStep],
         span: Range<f32>,
         most_parted: f32,
-    ) -> u32 {
-        let mut touched = 0;
+    ) -> SolvedPairs {
+        let count = self.start.len();
+        let mut solved = SolvedPairs::default();
         for i in 0..self.pairs.len() {
             let mut pair = self.pairs[i];
-            let is_first = pair.points[0] as usize >= self.start.len();
+            let is_first = pair.points[0] as usize >= count;
             let on = self.body_of(cloths, &pair.points, is_first, span.end);
-            let given = pair.solve(&mut self.points, most_parted, on.as_ref().map(TouchedBody::on).as_ref());
+            let touch = pair.solve(&mut self.points, most_parted, on.as_ref().map(TouchedBody::on).as_ref());
             self.pairs[i] = pair;
-            touched += u32::from(given.is_some());
-            push(cloths, on, given);
+            if let Some(touch) = touch {
+                solved.note(&pair, &touch, pair.points.iter().any(|&point| point as usize >= count));
+                push(cloths, on, touch.impulse);
+            }
         }
-        touched
+        solved
     }
 
     /// The body that some points are of, at the moment `t` of the step, after what has moved it: they are brought there.
@@ -135,8 +138,8 @@ impl TouchedBody {
 }
 
 /// Gives a body what something that touched it gives to it.
-fn push(cloths: &mut [impl ClothInStep], on: Option<TouchedBody>, given: Option<Impulse>) {
-    if let (Some(Impulse { linear, angular }), Some(TouchedBody { fixed, .. })) = (given, on) {
+fn push(cloths: &mut [impl ClothInStep], on: Option<TouchedBody>, Impulse { linear, angular }: Impulse) {
+    if let Some(TouchedBody { fixed, .. }) = on {
         cloths[fixed.cloth as usize].bodies_mut().push(fixed.obstacle as usize, linear, angular);
     }
 }

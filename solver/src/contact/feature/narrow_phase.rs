@@ -3,7 +3,10 @@
 use bevy_math::{Vec3, Vec3A};
 
 use crate::{
-    contact::feature::pair::{ClosestPoints, FeatureContact, Features},
+    contact::feature::{
+        pair::{ClosestPoints, FeatureContact, Features},
+        triangle_pack::FeatureMask,
+    },
     geometry::{
         bvh::{
             TriangleBvh,
@@ -21,21 +24,29 @@ pub struct Displacements<'a> {
     pub position: &'a [Vec3A],
     /// How far they will come before the next search if nothing stops them, m. None for what stays.
     pub way: &'a [Vec3A],
+    /// By how much they may come off that, m. None for what stays on it.
+    pub slack: &'a [f32],
 }
 
 impl Displacements<'_> {
     /// How far a point will come.
     #[inline]
-    fn way(&self, point: usize) -> Vec3A {
+    pub fn way(&self, point: usize) -> Vec3A {
         self.way.get(point).copied().unwrap_or(Vec3A::ZERO)
+    }
+
+    /// By how much a point may come off its way.
+    #[inline]
+    pub fn slack(&self, point: usize) -> f32 {
+        self.slack.get(point).copied().unwrap_or(0.0)
     }
 
     /// Box around the way of a triangle.
     #[inline]
     pub fn bounds(&self, triangle: [u32; 3]) -> Bounds {
         let [a, b, c] = triangle.map(|i| {
-            let (start, way) = (self.position[i as usize], self.way(i as usize));
-            Bounds { low: start.min(start + way), high: start.max(start + way) }
+            let (start, way, slack) = (self.position[i as usize], self.way(i as usize), self.slack(i as usize));
+            Bounds { low: start.min(start + way), high: start.max(start + way) }.grown(slack)
         });
         a.union(b).union(c)
     }
@@ -45,7 +56,10 @@ impl Displacements<'_> {
 #[derive(Clone, Copy, Debug)]
 pub struct ContactSide<'a> {
     pub surface: &'a TriangleBvh,
+    /// Boxes around the ways of triangles, with the margin.
     pub places: &'a BvhBounds,
+    /// By how much its boxes are larger than what is in them, m.
+    pub margin: f32,
     pub ways: Displacements<'a>,
     /// Number of the first of its points among all.
     pub first: u32,
@@ -68,11 +82,12 @@ impl ContactSide<'_> {
         self.ways.way(point as usize)
     }
 
-    /// Box around the way of a point, as thick as it is.
+    /// Box around the way of a point, as thick as it is, with the margin of this side.
     #[inline]
     fn way_of(&self, point: u32) -> Bounds {
         let (start, way) = (self.place(point), self.way(point));
-        Bounds { low: start.min(start + way), high: start.max(start + way) }.grown(self.radius(point))
+        Bounds { low: start.min(start + way), high: start.max(start + way) }
+            .grown(self.radius(point) + self.ways.slack(point as usize) + self.margin)
     }
 
     #[inline]
@@ -86,8 +101,13 @@ impl ContactSide<'_> {
 pub struct QueryMargin<'a> {
     /// Distance that features are to keep, m.
     pub distance: f32,
-    /// By how much features may come off their ways towards each other before the next search, m.
+    /// The same of edges from edges.
+    pub edge_distance: f32,
+    /// By how much features may come off their ways towards each other before the next search, m, beyond the slack of their points.
     pub slack: f32,
+    /// Whether features are taken to go straight on along their ways, within their slack. Else they may use the length of their ways in
+    /// any direction.
+    pub goes_straight: bool,
     /// Friction between the features, no unit.
     pub friction: f32,
     /// Where the points of a surface that may touch itself are at rest, m. What is nearer at rest than the distance may be
@@ -110,10 +130,11 @@ pub struct Candidate {
     pub nearest: ClosestPoints,
 }
 
-/// Shows the pairs of features of triangle `s` of `a` and triangle `t` of `b` that may touch.
+/// Shows the pairs of features of triangle `s` of `a` and triangle `t` of `b` that may touch, of those in the `mask`.
 pub fn pairs_between(
     (a, s): (&ContactSide, usize),
     (b, t): (&ContactSide, usize),
+    mask: FeatureMask,
     reach: &QueryMargin,
     mut found: impl FnMut(Candidate),
 ) {
@@ -124,37 +145,36 @@ pub fn pairs_between(
         return;
     }
     // Boxes tell most features apart, at a fraction of the price of their distance.
-    let reached = reach.distance + reach.slack;
-    let ways = triangle.map(|corner| a.way_of(corner).grown(reached));
-    let other_ways = other.map(|corner| b.way_of(corner));
-    if b.has_faces {
-        let face = other_ways[0].union(other_ways[1]).union(other_ways[2]);
-        for (k, &corner) in triangle.iter().enumerate() {
-            let is_met = mine.corners[k] > a.sharper_than && ways[k].meets(&face);
-            if is_met && !(is_same && other.contains(&corner)) {
-                let points = [corner, other[0], other[1], other[2]];
-                found_between(Features::PointFace, [a, b, b, b], points, reach, |f| found(Candidate { face: t, ..f }));
-            }
+    let (face, other_face) = (&a.places.of_triangles[s], &b.places.of_triangles[t]);
+    let is_set = |bits: u8, k: usize| bits >> k & 1 == 1;
+    for (k, &corner) in triangle.iter().enumerate().filter(|_| b.has_faces) {
+        let is_met = is_set(mask.corners, k) && mine.corners[k] > a.sharper_than && a.way_of(corner).meets(other_face);
+        if is_met && !(is_same && other.contains(&corner)) {
+            let points = [corner, other[0], other[1], other[2]];
+            found_between(Features::PointFace, [a, b, b, b], points, reach, |f| found(Candidate { face: t, ..f }));
         }
     }
-    if a.has_faces {
-        let face = ways[0].union(ways[1]).union(ways[2]);
-        for (k, &corner) in other.iter().enumerate() {
-            let is_met = theirs.corners[k] > b.sharper_than && other_ways[k].meets(&face);
-            if is_met && !(is_same && triangle.contains(&corner)) {
-                let points = [corner, triangle[0], triangle[1], triangle[2]];
-                let first = |f| found(Candidate { is_first_of_a: false, face: s, ..f });
-                found_between(Features::PointFace, [b, a, a, a], points, reach, first);
-            }
+    for (k, &corner) in other.iter().enumerate().filter(|_| a.has_faces) {
+        let is_met =
+            is_set(mask.other_corners, k) && theirs.corners[k] > b.sharper_than && b.way_of(corner).meets(face);
+        if is_met && !(is_same && triangle.contains(&corner)) {
+            let points = [corner, triangle[0], triangle[1], triangle[2]];
+            let first = |f| found(Candidate { is_first_of_a: false, face: s, ..f });
+            found_between(Features::PointFace, [b, a, a, a], points, reach, first);
         }
+    }
+    if mask.edges == 0 || mask.other_edges == 0 {
+        return;
     }
     for (i, [p, q]) in edges_of(triangle).into_iter().enumerate() {
-        if mine.edges[i] <= a.sharper_than {
+        if !is_set(mask.edges, i) || mine.edges[i] <= a.sharper_than {
             continue;
         }
-        let edge = ways[i].union(ways[(i + 1) % 3]);
+        let edge = a.way_of(p).union(a.way_of(q));
         for (k, [u, v]) in edges_of(other).into_iter().enumerate() {
-            let is_met = theirs.edges[k] > b.sharper_than && edge.meets(&other_ways[k].union(other_ways[(k + 1) % 3]));
+            let is_met = is_set(mask.other_edges, k)
+                && theirs.edges[k] > b.sharper_than
+                && edge.meets(&b.way_of(u).union(b.way_of(v)));
             if is_met && !(is_same && (p == u || p == v || q == u || q == v)) {
                 found_between(Features::EdgeEdge, [a, a, b, b], [p, q, u, v], reach, &mut found);
             }
@@ -208,7 +228,7 @@ pub fn balls_between(
 ) {
     let is_one_leaf = reach.rest.is_some() && p == q;
     for &point in a.surface.points_of_leaf(p) {
-        let way = a.way_of(point).grown(reach.distance + reach.slack);
+        let way = a.way_of(point);
         for &other in b.surface.points_of_leaf(q) {
             // Of a leaf with itself, each two points once.
             if !(is_one_leaf && point >= other) && way.meets(&b.way_of(other)) {
@@ -261,7 +281,7 @@ fn found_between(
         Features::PointFace | Features::PointPoint => (reach.distance + sides[0].radius(points[0]), 0.0),
         Features::EdgeEdge => {
             let near = sides[2].radius(points[2]);
-            (reach.distance + near, sides[3].radius(points[3]) - near)
+            (reach.edge_distance + near, sides[3].radius(points[3]) - near)
         }
     };
     let apart = |p: Vec3A, q: Vec3A| p.distance_squared(q);
@@ -270,11 +290,33 @@ fn found_between(
         Features::PointPoint => apart(w0, w1),
         Features::EdgeEdge => apart(w0, w2).max(apart(w0, w3)).max(apart(w1, w2)).max(apart(w1, w3)),
     };
-    let approach = approach.sqrt() + reach.slack;
+    let slack_of = |side: &ContactSide, point: u32| side.ways.slack(point as usize);
+    let [l0, l1, l2, l3] = [slack_of(s0, p0), slack_of(s1, p1), slack_of(s2, p2), slack_of(s3, p3)];
+    let of_points = match features {
+        Features::PointFace => l0 + l1.max(l2).max(l3),
+        Features::PointPoint => l0 + l1,
+        Features::EdgeEdge => l0.max(l1) + l2.max(l3),
+    };
+    let slack = reach.slack + of_points;
+    let approach = approach.sqrt() + slack;
     let nearest = features.nearest(places);
     let farthest = distance + taper.max(0.0) + approach;
-    if nearest.between.length_squared() > farthest * farthest {
+    let squared = nearest.between.length_squared();
+    if squared > farthest * farthest {
         return;
+    }
+    let margin = distance + taper.max(0.0) + slack;
+    if reach.goes_straight && squared > margin * margin {
+        // Along a direction that stays, the distance between points that go straight on is least where they start or end.
+        let direction = nearest.between / squared.sqrt();
+        let [a, b, c, d] = [places[0] + w0, places[1] + w1, places[2] + w2, places[3] + w3].map(|p| direction.dot(p));
+        let gap = match features {
+            Features::PointFace | Features::PointPoint => a - b.max(c).max(d),
+            Features::EdgeEdge => a.min(b) - c.max(d),
+        };
+        if gap > margin {
+            return;
+        }
     }
     let distance = reach.rest.map_or(distance, |rest| distance_at_rest(features, points, rest, distance, sides[0]));
     let (direction, length) = nearest.between.normalize_and_length();

@@ -12,6 +12,7 @@ use crate::{
         pair::{FeatureContact, Features},
         sharp_feature_cache::{SharpFeatureCache, distance_to, tightness},
         sink,
+        triangle_pack::FeatureMask,
     },
     geometry::{
         bvh::{
@@ -125,20 +126,31 @@ impl ObstacleSearch {
         if !bounds.meets(&target.places.whole()) {
             return;
         }
-        let ways = Displacements { position, way };
+        let ways = Displacements { position, way, slack: &[] };
         places.follow(surface, |triangle| ways.bounds(triangle).grown(reached), None::<fn(_) -> _>);
-        let a = ContactSide { surface, places, ways, first: at.first, sharper_than: 0.0, has_faces: true, radii: &[] };
+        let a = ContactSide {
+            surface,
+            places,
+            margin: reached,
+            ways,
+            first: at.first,
+            sharper_than: 0.0,
+            has_faces: true,
+            radii: &[],
+        };
         let b = ContactSide {
             surface: target.surface,
             places: target.places,
-            ways: Displacements { position: target.points, way: target.way.unwrap_or(&[]) },
+            margin: 0.0,
+            ways: Displacements { position: target.points, way: target.way.unwrap_or(&[]), slack: &[] },
             first: 0,
             sharper_than: if target.is_of_mesh { sharpness(cloth) } else { 0.0 },
             has_faces: false,
             radii: target.radii,
         };
         let friction = cloth.ctx().material.friction * obstacle.friction;
-        let reach = QueryMargin { distance, slack, friction, rest: None };
+        let reach =
+            QueryMargin { distance, edge_distance: distance, slack, goes_straight: false, friction, rest: None };
         found.clear();
         find_at_edges(&a, &b, &reach, (traversal, leaves), found, pierced);
         is_inside.clear();
@@ -231,7 +243,7 @@ fn find_at_edges(
         for s in a.surface.of_leaf(p) {
             for t in b.surface.of_leaf(q) {
                 if a.places.of_triangles[s].meets(&b.places.of_triangles[t]) {
-                    narrow_phase::pairs_between((a, s), (b, t), reach, |one| found.push(one));
+                    narrow_phase::pairs_between((a, s), (b, t), FeatureMask::ALL, reach, |one| found.push(one));
                     pierced.extend(narrow_phase::tips_through((a, s), (b, t)).map(|tip| (tip, s)));
                 }
             }

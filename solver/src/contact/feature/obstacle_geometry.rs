@@ -26,7 +26,7 @@ impl DeformedMesh {
         self.points.extend(from.iter().zip(to).map(|(&p, &q)| p.lerp(q, span.start)));
         self.way.clear();
         self.way.extend(from.iter().zip(to).map(|(&p, &q)| (q - p) * (span.end - span.start)));
-        let ways = Displacements { position: &self.points, way: &self.way };
+        let ways = Displacements { position: &self.points, way: &self.way, slack: &[] };
         self.places.follow(surface, |triangle| ways.bounds(triangle), None::<fn(_) -> _>);
     }
 }

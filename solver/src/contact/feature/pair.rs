@@ -149,6 +149,15 @@ pub struct Impulse {
     pub angular: Vec3A,
 }
 
+/// How two features touched.
+#[derive(Clone, Copy, Debug)]
+pub struct Touch {
+    /// How much nearer they were than they should be, m.
+    pub depth: f32,
+    /// What the obstacle among them got, if it is a body.
+    pub impulse: Impulse,
+}
+
 /// How two features part.
 #[derive(Clone, Copy, Debug)]
 pub struct FeatureCorrection {
@@ -200,14 +209,9 @@ impl FeatureCorrection {
 
 impl FeatureContact {
     /// Brings the features as far apart as they should be, with friction. Those that were nearer before part by no more than
-    /// `most_parted` (m). Where they touched, returns what the obstacle among them got, if it is a body.
+    /// `most_parted` (m). Returns how they touched, if they did.
     #[inline]
-    pub fn solve(
-        &mut self,
-        points: &mut FeaturePoints,
-        most_parted: f32,
-        body: Option<&BodyContact>,
-    ) -> Option<Impulse> {
+    pub fn solve(&mut self, points: &mut FeaturePoints, most_parted: f32, body: Option<&BodyContact>) -> Option<Touch> {
         let farthest = self.distance + self.taper.max(0.0);
         if self.is_beyond(points, farthest) {
             self.gap = farthest;
@@ -236,9 +240,9 @@ impl FeatureContact {
             depenetration: target - gap - penetration,
             friction: if self.is_solved_by_cloth { 0.0 } else { self.friction },
         };
-        let given = parting.apply(points, body)?;
+        let impulse = parting.apply(points, body)?;
         self.gap = target;
-        Some(given)
+        Some(Touch { depth: target - gap, impulse })
     }
 
     /// Whether all of the first feature is farther than `distance` (m) from all of the second, along the latest normal.

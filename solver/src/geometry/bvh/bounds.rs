@@ -1,6 +1,8 @@
 //! Where the triangles of a surface and its patches are, and which way they face.
 
-use bevy_math::Vec3A;
+use core::f32::consts::FRAC_1_SQRT_2;
+
+use bevy_math::{Vec3A, Vec4};
 
 use crate::geometry::bvh::TriangleBvh;
 
@@ -54,40 +56,27 @@ impl Bounds {
     }
 }
 
-/// The directions that patches may face, one a bit: to the sides, edges and corners of a cube.
-const DIRECTIONS: [[f32; 3]; 13] = {
-    const E: f32 = core::f32::consts::FRAC_1_SQRT_2;
-    const C: f32 = 0.577_350_3;
-    [
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, 0.0, 1.0],
-        [E, E, 0.0],
-        [E, -E, 0.0],
-        [E, 0.0, E],
-        [E, 0.0, -E],
-        [0.0, E, E],
-        [0.0, E, -E],
-        [C, C, C],
-        [C, C, -C],
-        [C, -C, C],
-        [C, -C, -C],
-    ]
-};
+/// 1/√3, no unit.
+const FRAC_1_SQRT_3: f32 = 0.577_350_3;
 
 /// Cosine of the largest angle between a patch's normals and the direction that it is said to face: a patch that
 /// is no steeper has room to fold before it touches itself.
 const FACING: f32 = 0.5;
 
-/// The directions that a normal of any length faces.
+/// The directions that a normal of any length faces, one a bit: those to the sides, edges and corners of a cube.
 fn facing(normal: Vec3A) -> u32 {
-    let least = FACING * normal.length();
-    let mut bits = 0;
-    for (i, direction) in DIRECTIONS.iter().enumerate() {
-        let along = normal.dot(Vec3A::from_array(*direction));
-        bits |= u32::from(along > least) << (2 * i) | u32::from(-along > least) << (2 * i + 1);
-    }
-    bits
+    let [x, y, z] = normal.to_array();
+    // How far it goes along each, and in the upper half of the bits against it.
+    let along = [
+        Vec4::new(x, y, z, 0.0),
+        Vec4::new(x + y, x - y, x + z, x - z) * FRAC_1_SQRT_2,
+        Vec4::new(y + z, y - z, 0.0, 0.0) * FRAC_1_SQRT_2,
+        Vec4::new(x + y + z, x + y - z, x - y + z, x - y - z) * FRAC_1_SQRT_3,
+    ];
+    let least = Vec4::splat(FACING * normal.length());
+    along.into_iter().enumerate().fold(0, |bits, (i, along)| {
+        bits | along.cmpgt(least).bitmask() << (4 * i) | (-along).cmpgt(least).bitmask() << (16 + 4 * i)
+    })
 }
 
 /// Where the triangles of a surface are, and its patches.

@@ -4,7 +4,9 @@ use fastrand::Rng;
 use proptest::prelude::*;
 
 use super::*;
-use crate::geometry::bvh::traversal::Traversal;
+use crate::{
+    contact::feature::triangle_pack::TrianglePack, geometry::bvh::traversal::Traversal, layout::simd::SimdLevel,
+};
 
 /// A sheet of triangles on its way.
 struct Sheet {
@@ -13,11 +15,17 @@ struct Sheet {
     places: BvhBounds,
     position: Vec<Vec3A>,
     way: Vec<Vec3A>,
+    slack: Vec<f32>,
     radii: Vec<f32>,
+    margin: f32,
 }
 
 const DISTANCE: f32 = 0.05;
-const SLACK: f32 = 0.03;
+const EDGE_DISTANCE: f32 = 0.03;
+const SLACK: f32 = 0.01;
+
+/// The largest slack of a point, m.
+const POINT_SLACK: f32 = 0.02;
 
 /// Points that the sides of a sheet have.
 const SIDE: u32 = 5;
@@ -41,21 +49,33 @@ impl Sheet {
         let way = position.iter().map(|_| noise(0.1)).collect();
         let radii =
             if radius > 0.0 { position.iter().map(|_| (noise(1.0).x + 0.5) * radius).collect() } else { Vec::new() };
-        let mut places = BvhBounds::default();
+        let slack = position.iter().map(|_| (noise(1.0).x + 0.5) * POINT_SLACK).collect();
         let surface = TriangleBvh::new(&rest, &triangles);
-        let mut sheet = Self { rest, surface, places: BvhBounds::default(), position, way, radii };
-        let corners = |triangle: [u32; 3]| triangle.map(|i| sheet.position[i as usize]);
-        let margin = 0.5 * (DISTANCE + SLACK) + radius;
-        places.follow(&sheet.surface, |triangle| sheet.side(0).ways.bounds(triangle).grown(margin), Some(corners));
-        sheet.places = places;
+        let mut sheet = Self { rest, surface, places: BvhBounds::default(), position, way, slack, radii, margin: 0.0 };
+        sheet.follow(0.5 * (DISTANCE + SLACK), radius);
         sheet
+    }
+
+    /// Puts boxes around where it is, and a margin around them.
+    fn follow(&mut self, margin: f32, radius: f32) {
+        let mut places = BvhBounds::default();
+        let corners = |triangle: [u32; 3]| triangle.map(|i| self.position[i as usize]);
+        let bounds = |triangle| self.side(0).ways.bounds(triangle).grown(margin + radius);
+        places.follow(&self.surface, bounds, Some(corners));
+        (self.places, self.margin) = (places, margin);
+    }
+
+    fn packs(&self) -> Vec<TrianglePack> {
+        let (ways, bounds) = (self.side(0).ways, &self.places.of_triangles);
+        self.surface.leaves().map(|leaf| TrianglePack::new(&self.surface, leaf, &ways, bounds)).collect()
     }
 
     fn side(&self, first: u32) -> ContactSide<'_> {
         ContactSide {
             surface: &self.surface,
             places: &self.places,
-            ways: Displacements { position: &self.position, way: &self.way },
+            margin: self.margin,
+            ways: Displacements { position: &self.position, way: &self.way, slack: &self.slack },
             first,
             sharper_than: 0.0,
             has_faces: true,
@@ -72,6 +92,7 @@ impl Sheet {
 struct All {
     position: Vec<Vec3A>,
     way: Vec<Vec3A>,
+    slack: Vec<f32>,
     radii: Vec<f32>,
 }
 
@@ -83,11 +104,13 @@ impl All {
         Self {
             position: sheets.iter().flat_map(|sheet| sheet.position.clone()).collect(),
             way: sheets.iter().flat_map(|sheet| sheet.way.clone()).collect(),
+            slack: sheets.iter().flat_map(|sheet| sheet.slack.clone()).collect(),
             radii: sheets.iter().flat_map(|sheet| radii(sheet)).collect(),
         }
     }
 
-    /// How near two features come to touching on their ways, at least, m; and how far from it they begin.
+    /// How near two features may come to touching on their ways, at least, m, if their points use up their slack; and how far from it
+    /// they begin.
     fn nearest(&self, features: Features, points: [u32; 4]) -> [f32; 2] {
         let radius = |i: usize| self.radii[points[i] as usize];
         let room = match features {
@@ -96,9 +119,11 @@ impl All {
         };
         let at = |share: f32| {
             let places = points.map(|i| self.position[i as usize] + self.way[i as usize] * share);
-            features.nearest(places).between.length() - room
+            let ClosestPoints { weights, between } = features.nearest(places);
+            let slack: f32 = points.iter().zip(weights).map(|(&i, weight)| self.slack[i as usize] * weight.abs()).sum();
+            [between.length() - room - slack, between.length() - room]
         };
-        [(0..=10).map(|i| at(i as f32 / 10.0)).fold(f32::INFINITY, f32::min), at(0.0)]
+        [(0..=10).map(|i| at(i as f32 / 10.0)[0]).fold(f32::INFINITY, f32::min), at(0.0)[1]]
     }
 }
 
@@ -137,25 +162,50 @@ fn pairs(a: &Sheet, b: &Sheet) -> Vec<(Features, [u32; 4])> {
     points.chain(edges.map(|points| (Features::EdgeEdge, points))).collect()
 }
 
+/// Distance that features keep.
+fn kept(features: Features) -> f32 {
+    if features == Features::EdgeEdge { EDGE_DISTANCE } else { DISTANCE }
+}
+
 fn reach(rest: Option<&[Vec3]>) -> QueryMargin<'_> {
-    QueryMargin { distance: DISTANCE, slack: SLACK, friction: 0.3, rest }
+    QueryMargin {
+        distance: DISTANCE,
+        edge_distance: EDGE_DISTANCE,
+        slack: SLACK,
+        goes_straight: true,
+        friction: 0.3,
+        rest,
+    }
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn all_features_that_may_touch_are_found_once(seed in any::<u64>(), height in 0.0_f32..0.3, radius in prop_oneof![Just(0.0_f32), 0.01_f32..0.1]) {
+    fn all_features_that_may_touch_are_found_once(seed in any::<u64>(), height in 0.0_f32..0.3, radius in prop_oneof![Just(0.0_f32), 0.01_f32..0.1], is_wide in any::<bool>()) {
         let mut rng = Rng::with_seed(seed);
         let (a, b) = (Sheet::new(1, 0.0, 0.0, &mut rng), Sheet::new(1, height, radius, &mut rng));
         let (one, other) = (a.side(0), b.side(a.count()));
         let mut found = Vec::new();
         let mut leaves = Vec::new();
         Traversal::default().between((&a.surface, &a.places), (&b.surface, &b.places), |p, q| leaves.push((p, q)));
+        let (packs, others) = (a.packs(), b.packs());
+        let simd_level = if is_wide { SimdLevel::Best } else { SimdLevel::Baseline };
         for (p, q) in leaves {
-            for (s, t) in a.surface.of_leaf(p).flat_map(|s| b.surface.of_leaf(q).map(move |t| (s, t))) {
-                pairs_between((&one, s), (&other, t), &reach(None), |f| found.push(f.pair));
+            // With a radius, as an obstacle has, there are no packs.
+            if radius > 0.0 {
+                for (s, t) in a.surface.of_leaf(p).flat_map(|s| b.surface.of_leaf(q).map(move |t| (s, t))) {
+                    pairs_between((&one, s), (&other, t), FeatureMask::ALL, &reach(None), |f| found.push(f.pair));
+                }
+                continue;
             }
+            let (pack, other_pack) = (&packs[a.surface.leaf_number(p)], &others[b.surface.leaf_number(q)]);
+            // Packs know nothing of slack that isn't of a point.
+            let distances = [DISTANCE + SLACK, EDGE_DISTANCE + SLACK];
+            pack.near(other_pack, distances, false, simd_level, |s, t, mask| {
+                let (s, t) = (a.surface.of_leaf(p).start + s, b.surface.of_leaf(q).start + t);
+                pairs_between((&one, s), (&other, t), mask, &reach(None), |f| found.push(f.pair));
+            });
         }
         let all = All::of(&[&a, &b]);
         let mut names: Vec<_> = found.iter().map(|pair| name(pair.features, pair.points)).collect();
@@ -164,9 +214,10 @@ proptest! {
         for (features, points) in pairs(&a, &b) {
             let [nearest, start] = all.nearest(features, points);
             let is_found = names.binary_search(&name(features, points)).is_ok();
-            prop_assert!(is_found || nearest > DISTANCE + SLACK - 1e-5, "{features:?} {points:?}: {nearest} m");
+            let reached = kept(features) + SLACK;
+            prop_assert!(is_found || nearest > reached - 1e-5, "{features:?} {points:?}: {nearest} m");
             // None goes farther on its way than 0.1 m along each axis.
-            let farthest = DISTANCE + SLACK + 0.35 + radius;
+            let farthest = reached + 2.0 * POINT_SLACK + 0.35 + radius;
             prop_assert!(!is_found || start < farthest, "{features:?} {points:?}: {start} m");
         }
         for pair in &found {
@@ -175,8 +226,9 @@ proptest! {
             prop_assert!(nearest.distance(pair.normal * pair.gap) < 1e-5, "{nearest} along {}", pair.normal);
             let radius = |i: usize| all.radii[pair.points[i] as usize];
             let [near, far] = if pair.features == Features::EdgeEdge { [radius(2), radius(3)] } else { [radius(0); 2] };
-            prop_assert!((pair.distance - DISTANCE - near).abs() < 1e-6);
-            prop_assert!((pair.distance + pair.taper - DISTANCE - far).abs() < 1e-6);
+            let kept = kept(pair.features);
+            prop_assert!((pair.distance - kept - near).abs() < 1e-6);
+            prop_assert!((pair.distance + pair.taper - kept - far).abs() < 1e-6);
         }
     }
 
@@ -213,11 +265,13 @@ proptest! {
         }
         // So much that what is a cell apart has less.
         let kept = 0.3;
-        let (side, reach) = (sheet.side(0), QueryMargin { distance: kept, ..reach(Some(&sheet.rest)) });
+        sheet.follow(0.5 * (kept + SLACK), 0.0);
+        let reach = QueryMargin { distance: kept, edge_distance: kept, ..reach(Some(&sheet.rest)) };
+        let side = sheet.side(0);
         let mut found = Vec::new();
         let count = sheet.surface.triangles.len();
         for (s, t) in (0..count).flat_map(|s| (s + 1..count).map(move |t| (s, t))) {
-            pairs_between((&side, s), (&side, t), &reach, |f| found.push(f.pair));
+            pairs_between((&side, s), (&side, t), FeatureMask::ALL, &reach, |f| found.push(f.pair));
         }
         let mut names: Vec<_> = found.iter().map(|pair| name(pair.features, pair.points)).collect();
         names.sort_unstable();
