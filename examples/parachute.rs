@@ -84,7 +84,7 @@ fn spawn_parachute(commands: &mut Commands, studio: &mut common::Studio, place: 
     }
     commands.spawn((
         studio.cloth(grid, color),
-        Cloth { self_collision: SelfCollision::Particles, ..default() },
+        Cloth { self_collision: true, ..default() },
         // Stiff enough for cells of 5 cm to show its folds.
         Fabric { density: 0.05, bending_rigidity: 60e-6, drag: 1.4, ..Fabric::SILK },
         pins,

@@ -67,7 +67,7 @@ fn drop_next(mut commands: Commands, mut studio: common::Studio, mut dropped: Lo
     let aside = Quat::from_rotation_y(1.9 * number) * Vec3::X * 0.07;
     commands.spawn((
         studio.cloth(ClothGrid::new(size.x, size.y, particles.x, particles.y).lying(), color),
-        Cloth { self_collision: SelfCollision::Robust, self_distance: 0.006, collision_margin: 0.006, ..default() },
+        Cloth { self_collision: true, self_distance: 0.006, collision_margin: 0.006, ..default() },
         fabric,
         Transform::from_translation(aside + Vec3::Y * 0.85).with_rotation(turn),
     ));

@@ -7,7 +7,7 @@ use crate::{
     fabric::Fabric,
     parameter::{Parameter, check_parameters},
     pins::Pins,
-    solver::{LevelPass, Method, Moduli, SelfCollision, SubstepPolicy, Topology},
+    solver::{LevelPass, Method, Moduli, SubstepPolicy, Topology},
     state::{
         ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, Sleep, StepInput,
         Warned,
@@ -79,7 +79,7 @@ pub struct Cloth {
     /// `None` is for as many as [`max_strain`](Self::max_strain) needs, 4 by default for implicit steps; with
     /// [`ClothSprings`](crate::prelude::ClothSprings) on a mesh without rows and columns at least 8, three for each ten vertices
     /// along a side, and up to 32 where triangles are narrow; at least 8 near obstacles, in a hand and without tethers; half as
-    /// many more with [`SelfCollision::Robust`], 16 at least; three times as many, 32 at least, near solids with edges, and thin
+    /// many more with `self_collision`, 16 at least; three times as many, 32 at least, near solids with edges, and thin
     /// ones, and twice that near tips. Implicit steps take no more near edges, and 32 near tips. With [`ClothSolver::Xpbd`] for 8.
     #[reflect(@Parameter::within("", (1.0, 10_000.0), (1.0, 64.0)).whole().entered((1.0, 1000.0)))]
     pub substeps: Option<u32>,
@@ -119,9 +119,9 @@ pub struct Cloth {
     /// default. 0.5 to 3: more gets out sooner, and looks like a blow.
     #[reflect(@Parameter::positive("m/s", (0.1, 5.0)).logarithmic(0.1).entered((0.001, 1000.0)).titled("Leaving speed"))]
     pub max_depenetration_velocity: f32,
-    /// Self-collision mode: how the cloth collides with itself, and with other cloths that have one too. Off by default, since
-    /// it costs.
-    pub self_collision: SelfCollision,
+    /// Whether the cloth collides with itself, and with other cloths that do too: triangles and edges stay apart, in folds, layers
+    /// and knots. No by default, since it costs.
+    pub self_collision: bool,
     /// Distance in m that parts of cloth keep from each other, greater than 0, 0.004 by default. 0.002 to 0.01: less lies
     /// closer, more is safer in a rush. Parts that are nearer to each other at rest stay so. More than four edges of the mesh
     /// count as four.
@@ -153,7 +153,7 @@ impl Default for Cloth {
             fluid_density: 1.225,
             collision_margin: 0.005,
             max_depenetration_velocity: 1.0,
-            self_collision: SelfCollision::Off,
+            self_collision: false,
             self_distance: 0.004,
             self_friction: 0.3,
             collision_layers: 1,

@@ -133,13 +133,12 @@
 //!
 //! # Cloth on cloth
 //!
-//! [`self_collision`](prelude::Cloth::self_collision) is off by default, since it costs.
-//! [`SelfCollision::Robust`](prelude::SelfCollision::Robust) keeps triangles and edges apart, of one cloth and of all
-//! others that have it on: folds, layers, knots and piles.
+//! [`Cloth::self_collision`](prelude::Cloth::self_collision), which is off by default, since it costs, keeps triangles and
+//! edges apart, of one cloth and of all others that have it on: folds, layers, knots and piles.
 //!
 //! ```
 //! # use bevy_drape::prelude::*;
-//! let sheet = Cloth { self_collision: SelfCollision::Robust, self_distance: 0.004, ..Default::default() };
+//! let sheet = Cloth { self_collision: true, self_distance: 0.004, ..Default::default() };
 //! ```
 //!
 //! # Characters
@@ -267,7 +266,7 @@
 //! | folds are too wide, and the log says that the mesh is too coarse | a finer mesh, or more [`bending_rigidity`](prelude::Fabric::bending_rigidity) |
 //! | triangles cut through an edge of an obstacle | more [`collision_margin`](prelude::Cloth::collision_margin), more substeps, or a finer mesh |
 //! | a small, fast or sharp obstacle pierces it | 96 substeps by hand; as a mesh, 32 |
-//! | it passes through itself or other cloth | [`SelfCollision::Robust`](prelude::SelfCollision::Robust) on both, and their layers and masks; more substeps |
+//! | it passes through itself or other cloth | `self_collision` on both, and their layers and masks; more substeps |
 //! | it jitters on an obstacle | at least 8 substeps where they are set by hand; move obstacles in `FixedUpdate` |
 //! | it is black on one side | `double_sided: true, cull_mode: None` in the material |
 //! | it lags behind a jump of its entity | [`teleport_cloth`](prelude::ClothCommands::teleport_cloth), on the root of its character |
@@ -370,7 +369,7 @@ pub mod prelude {
         mesh_input::{ATTRIBUTE_WARP, ClothGrid},
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
-        solver::{Ellipsoid, LevelPass, MeshError, SelfCollision, Solid, TaperedCapsule},
+        solver::{Ellipsoid, LevelPass, MeshError, Solid, TaperedCapsule},
         state::{
             ClothAttachments, ClothFailed, ClothFellAsleep, ClothGrabbed, ClothGrabs, ClothGrip, ClothPoint,
             ClothReady, ClothReleased, ClothReport, ClothReset, ClothSleepingDisabled, ClothState, ClothStatus,

@@ -3,7 +3,6 @@
 use std::io;
 
 use bevy::math::Vec3;
-use bevy_drape::solver::SelfCollision;
 use clap::ValueEnum;
 use drape_lab::scene::{Scene, Settings, bullet, drape, fold, layers, needle, ribbon, storm, twist};
 
@@ -44,7 +43,7 @@ impl Experiment {
 
     pub fn scene(self, n: u32, substeps: Option<u32>) -> io::Result<Scene> {
         let settings = |self_collision| Settings { substeps, ..Settings::standard(n, 300, self_collision) };
-        let (alone, robust) = (settings(SelfCollision::Off), settings(SelfCollision::Robust));
+        let (alone, robust) = (settings(false), settings(true));
         match self {
             Self::Drape => {
                 let cloth = alone.cloth(&alone.grid(1.0, 1.0).lying().into())?;

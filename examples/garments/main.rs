@@ -101,7 +101,7 @@ fn spawn(commands: &mut Commands, studio: &mut common::Studio, item: Item, place
     commands.spawn((
         studio.cloth(item.mesh, item.color),
         Cloth {
-            self_collision: SelfCollision::Robust,
+            self_collision: true,
             // They meet themselves and what they fall on, and not each other.
             collision_layers: 2,
             collision_mask: 1,

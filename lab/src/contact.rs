@@ -2,7 +2,6 @@
 
 use std::io;
 
-use bevy_drape::solver::SelfCollision;
 use clap::{Subcommand, ValueEnum};
 use serde_json::Value;
 
@@ -113,7 +112,7 @@ impl Contact {
         let grid = &MeshSource::Grid;
         let (name, options, mesh, scene) = match self {
             Self::Drape { options, mesh, on, others } => {
-                let settings = options.settings(SelfCollision::Off)?;
+                let settings = options.settings(false)?;
                 let (cloth, _) = hang::free(options, &settings, mesh)?;
                 let (name, scene) = match on {
                     Below::Ball => ("drape", drape::on_ball(&settings, [drape::raised(cloth)])),
@@ -122,25 +121,17 @@ impl Contact {
                 (name, options, mesh, drape::among(scene, *others))
             }
             Self::Mesh { options, open } => {
-                let settings = options.settings(SelfCollision::Off)?;
+                let settings = options.settings(false)?;
                 let (cloth, _) = hang::free(options, &settings, grid)?;
                 ("mesh", options, grid, drape::on_mesh(&settings, drape::raised(cloth), !open)?)
             }
-            Self::Fold { options } => ("fold", options, grid, fold::fold(&options.settings(SelfCollision::Robust)?)?),
-            Self::Ribbon { options } => {
-                ("ribbon", options, grid, ribbon::ribbon(&options.settings(SelfCollision::Robust)?)?)
-            }
-            Self::Twist { options } => {
-                ("twist", options, grid, twist::twist(&options.settings(SelfCollision::Robust)?)?)
-            }
-            Self::Layers { options } => {
-                ("layers", options, grid, layers::layers(&options.settings(SelfCollision::Robust)?)?)
-            }
-            Self::Storm { options } => {
-                ("storm", options, grid, storm::storm(&options.settings(SelfCollision::Robust)?)?)
-            }
+            Self::Fold { options } => ("fold", options, grid, fold::fold(&options.settings(true)?)?),
+            Self::Ribbon { options } => ("ribbon", options, grid, ribbon::ribbon(&options.settings(true)?)?),
+            Self::Twist { options } => ("twist", options, grid, twist::twist(&options.settings(true)?)?),
+            Self::Layers { options } => ("layers", options, grid, layers::layers(&options.settings(true)?)?),
+            Self::Storm { options } => ("storm", options, grid, storm::storm(&options.settings(true)?)?),
             Self::Needle { options, mesh, on } => {
-                let settings = options.settings(SelfCollision::Off)?;
+                let settings = options.settings(false)?;
                 let (cloth, _) = hang::free(options, &settings, mesh)?;
                 let (name, sharp) = match on {
                     Sharp::Needle => ("needle", needle::Sharp::Needle),
@@ -150,7 +141,7 @@ impl Contact {
                 (name, options, mesh, needle::below(&settings, cloth, sharp))
             }
             Self::Bullet { options, mesh, of } => {
-                let settings = options.settings(SelfCollision::Off)?;
+                let settings = options.settings(false)?;
                 let (cloth, _) = hang::free(options, &settings, mesh)?;
                 let (name, scene) = match of {
                     Impact::Ball => ("bullet: ball", bullet::ball_against(&settings, cloth, 0.02)),

@@ -6,10 +6,7 @@ use bevy::{
     math::{Vec3A, ops},
     prelude::*,
 };
-use bevy_drape::{
-    build,
-    solver::{SelfCollision, Topology},
-};
+use bevy_drape::{build, solver::Topology};
 
 use super::{
     mesh::{self, MeshSource, Top},
@@ -20,7 +17,7 @@ use super::{
 
 /// The cloth hangs from two corners of its top, or from the whole of it.
 pub fn hang(options: &Options, mesh: &MeshSource, pinned: PinnedPart) -> io::Result<Scene> {
-    let settings = options.settings(SelfCollision::Off)?;
+    let settings = options.settings(false)?;
     let (mut cloth, top) = free(options, &settings, mesh)?;
     let pins = pins::choose(&cloth.topology, &top, pinned);
     cloth.hold(&pins);

@@ -4,7 +4,7 @@ use std::{io, path::PathBuf, str::FromStr};
 
 use bevy_drape::{
     prelude::{ClothError, Fabric},
-    solver::{Elasticity, LevelPass, Material, Method, SelfCollision, SpringConstants, SpringKind},
+    solver::{Elasticity, LevelPass, Material, Method, SpringConstants, SpringKind},
 };
 use clap::{Args, ValueEnum};
 
@@ -54,9 +54,9 @@ pub struct Options {
     /// Thickness, m
     #[arg(long, default_value_t = 0.0)]
     pub thickness: f32,
-    /// What of the cloth meets itself; where nothing is said, what the experiment is about
+    /// Whether the cloth meets itself; where nothing is said, what the experiment is about
     #[arg(long, value_enum)]
-    pub self_collision: Option<SelfContact>,
+    pub self_collision: Option<Switch>,
     /// Distance that parts of cloth keep from each other, m
     #[arg(long, default_value_t = 0.004)]
     pub self_distance: f32,
@@ -108,13 +108,8 @@ impl FromStr for Levels {
 
 impl Options {
     /// What they say of a scene, of which `self_collision` is what it is about.
-    pub fn settings(&self, self_collision: SelfCollision) -> io::Result<Settings> {
-        let self_collision = match self.self_collision {
-            None => self_collision,
-            Some(SelfContact::Off) => SelfCollision::Off,
-            Some(SelfContact::Particles) => SelfCollision::Particles,
-            Some(SelfContact::Robust) => SelfCollision::Robust,
-        };
+    pub fn settings(&self, self_collision: bool) -> io::Result<Settings> {
+        let self_collision = self.self_collision.map_or(self_collision, |switch| switch == Switch::On);
         Ok(Settings {
             method: match self.solver {
                 Solver::Strands => Method::Strands,
@@ -163,13 +158,6 @@ pub enum Solver {
     Strands,
     Xpbd,
     Explicit,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-pub enum SelfContact {
-    Off,
-    Particles,
-    Robust,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]

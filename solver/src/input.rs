@@ -17,7 +17,7 @@ mod wind;
 
 pub use crate::input::{
     body::{AttachedPin, Body, BodyAttachment, BodyDisplacement, BodyImpulse},
-    collision::{CollisionFilter, SelfCollision},
+    collision::CollisionFilter,
     grab::{Grab, GrabTether},
     obstacle::Obstacle,
     pin_motion::PinMotion,

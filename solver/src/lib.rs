@@ -37,8 +37,8 @@ pub use crate::{
     contact::StepReach,
     input::{
         AttachedPin, Body, BodyAttachment, BodyDisplacement, BodyImpulse, CollisionFilter, Grab, GrabTether, Gusts,
-        MAX_TIME_STEP, Method, Obstacle, PinMotion, SelfCollision, StepContext, StepSettings, SubstepPolicy, Tether,
-        Tethers, WindRegion, WindSource,
+        MAX_TIME_STEP, Method, Obstacle, PinMotion, StepContext, StepSettings, SubstepPolicy, Tether, Tethers,
+        WindRegion, WindSource,
     },
     layout::simd::SimdLevel,
     material::{Elasticity, Material, Moduli, SpringConstants, SpringLaw},

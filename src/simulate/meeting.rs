@@ -11,7 +11,7 @@ use bevy::{
 
 use crate::{
     cloth::InForce,
-    solver::{MAX_TIME_STEP, SelfCollision, StepSettings},
+    solver::MAX_TIME_STEP,
     state::{ClothAttachments, ClothReport, ClothSleepingDisabled, ClothState, ClothStatus, Sleep, StepInput},
 };
 
@@ -36,7 +36,7 @@ const GAINED: f32 = 0.02;
 /// Puts cloths that may touch each other within `dt` seconds together, in the order of their entities.
 pub(super) fn group<'w, 's>(ready: Vec<SteppedItem<'w, 's>>, dt: f32) -> Vec<Vec<SteppedItem<'w, 's>>> {
     let (mut meeting, alone): (Vec<_>, Vec<_>) =
-        ready.into_iter().partition(|cloth| cloth.in_force.solver.self_collision != SelfCollision::Off);
+        ready.into_iter().partition(|cloth| cloth.in_force.solver.self_collision);
     meeting.sort_unstable_by_key(|cloth| cloth.entity);
     let boxes: Vec<Option<Aabb3d>> = meeting.iter().map(|cloth| reached(cloth, dt)).collect();
     let filter = |i: usize| meeting[i].in_force.solver.collision_filter;
@@ -73,8 +73,7 @@ fn reached(SteppedItem { state, in_force, sleep, .. }: &SteppedItem, dt: f32) ->
     let [low, high] = sleep.reach.map(|reach| reach.bounds()).or_else(around_moving)?.map(|corner| origin + corner);
     let bounds = Aabb3d { min: low, max: high };
     // Far from the world's origin, places are rounded.
-    let StepSettings { self_collision, self_distance, .. } = in_force.solver;
-    let distance = self_collision.distance_on(&state.topology, self_distance);
+    let distance = in_force.solver.self_distance_on(&state.topology);
     let margin = distance + GAINED + 1e-6 * origin.abs().max_element();
     (low.is_finite() && high.is_finite()).then(|| bounds.grow(Vec3A::splat(margin)))
 }

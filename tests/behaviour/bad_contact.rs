@@ -13,7 +13,7 @@ fn sheet(app: &mut App, height: f32, cloth: Cloth) -> Entity {
 }
 
 fn meeting() -> Cloth {
-    Cloth { self_collision: SelfCollision::Robust, substeps: Some(16), ..default() }
+    Cloth { self_collision: true, substeps: Some(16), ..default() }
 }
 
 fn fastest(app: &App, cloth: Entity) -> f32 {
@@ -66,10 +66,10 @@ fn a_cloth_that_starts_where_colliders_are_in_each_other_stays_whole() {
 }
 
 /// The highest speed of two sheets that fall on each other and keep such a distance for so many frames, m/s.
-fn thrown(self_collision: SelfCollision, self_distance: f32, frames: usize) -> f32 {
+fn thrown(self_distance: f32, frames: usize) -> f32 {
     let mut app = headless();
     ground(&mut app);
-    let cloth = Cloth { self_distance, self_collision, ..meeting() };
+    let cloth = Cloth { self_distance, ..meeting() };
     let cloths = [0.1, 0.15].map(|height| sheet(&mut app, height, cloth.clone()));
     let mut most = 0.0_f32;
     for _ in 0..frames {
@@ -77,21 +77,19 @@ fn thrown(self_collision: SelfCollision, self_distance: f32, frames: usize) -> f
         most = cloths.iter().map(|&cloth| fastest(&app, cloth)).fold(most, f32::max);
     }
     assert!(cloths.iter().all(|&cloth| positions(&app, cloth).iter().all(|place| place.is_finite())));
-    assert_eq!(app.world().resource::<Heard>().reset, [], "{self_collision:?}, {self_distance} m");
+    assert_eq!(app.world().resource::<Heard>().reset, [], "{self_distance} m");
     most
 }
 
 #[test]
 fn distances_that_no_cloth_can_keep_throw_nothing() {
-    for mode in [SelfCollision::Particles, SelfCollision::Robust] {
-        for self_distance in [1e-30, 0.1] {
-            let most = thrown(mode, self_distance, 60);
-            assert!(most < 2.0, "{mode:?}, {self_distance} m: {most} m/s");
-        }
-        // Beyond all measure, sheets fly apart no faster than they may, and slowly: everything is near everything.
-        let most = thrown(mode, f32::MAX, 2);
-        assert!(most < 1.01 * Cloth::default().max_velocity, "{mode:?}: {most} m/s");
+    for self_distance in [1e-30, 0.1] {
+        let most = thrown(self_distance, 60);
+        assert!(most < 2.0, "{self_distance} m: {most} m/s");
     }
+    // Beyond all measure, sheets fly apart no faster than they may, and slowly: everything is near everything.
+    let most = thrown(f32::MAX, 2);
+    assert!(most < 1.01 * Cloth::default().max_velocity, "{most} m/s");
 }
 
 #[test]
@@ -115,16 +113,16 @@ fn a_self_distance_that_turns_bad_is_ignored() {
 
 #[test]
 fn cloths_meet_from_the_moment_that_they_are_told_to() {
-    let apart = |switch: &[(usize, SelfCollision)]| {
+    let apart = |switch: &[(usize, bool)]| {
         let mut app = headless();
         ground(&mut app);
-        let start = switch.first().map_or(SelfCollision::Robust, |_| SelfCollision::Off);
+        let start = switch.is_empty();
         let cloth = |self_collision| Cloth { self_collision, ..meeting() };
         let cloths = [0.02, 0.3].map(|height| sheet(&mut app, height, cloth(start)));
         for frame in 0..90 {
-            for &(_, mode) in switch.iter().filter(|&&(when, _)| when == frame) {
+            for &(_, meets) in switch.iter().filter(|&&(when, _)| when == frame) {
                 for entity in cloths {
-                    get_mut::<Cloth>(&mut app, entity).self_collision = mode;
+                    get_mut::<Cloth>(&mut app, entity).self_collision = meets;
                 }
             }
             run(&mut app, 1);
@@ -137,13 +135,13 @@ fn cloths_meet_from_the_moment_that_they_are_told_to() {
     let kept = Cloth::default().self_distance;
     assert!((apart(&[]) - kept).abs() < 0.2 * kept, "{}", apart(&[]));
     // In the air.
-    let switched = apart(&[(3, SelfCollision::Robust)]);
+    let switched = apart(&[(3, true)]);
     assert!((switched - kept).abs() < 0.2 * kept, "{switched}");
     // On and off: the upper one sinks to the ground, through the other.
-    let off_again = apart(&[(3, SelfCollision::Robust), (60, SelfCollision::Off)]);
+    let off_again = apart(&[(3, true), (60, false)]);
     assert!(off_again < 0.5 * kept, "{off_again}");
     // When they have lain in the same place for long, nothing is thrown; who is above is anyone's guess.
-    let late = apart(&[(60, SelfCollision::Robust)]);
+    let late = apart(&[(60, true)]);
     assert!(late.abs() < 2.0 * kept, "{late}");
 }
 
@@ -169,7 +167,7 @@ fn what_a_cloth_went_through_before_it_was_told_not_to_comes_out() {
     };
     run(&mut app, 60);
     let before = tangles(&app);
-    get_mut::<Cloth>(&mut app, cloth).self_collision = SelfCollision::Robust;
+    get_mut::<Cloth>(&mut app, cloth).self_collision = true;
     run(&mut app, 300);
     assert!(before > 0 && tangles(&app) <= before / 4, "{before} pairs, then {}", tangles(&app));
 }

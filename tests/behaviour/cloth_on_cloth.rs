@@ -6,7 +6,7 @@ use bevy_drape::prelude::*;
 use crate::common::*;
 
 fn meeting() -> Cloth {
-    Cloth { self_collision: SelfCollision::Robust, substeps: Some(8), ..default() }
+    Cloth { self_collision: true, substeps: Some(8), ..default() }
 }
 
 /// A sheet that is held at its four corners at `height`.
@@ -90,5 +90,5 @@ fn a_cloth_that_is_told_to_meet_itself_does_not_when_it_is_alone_and_flat() {
         run(&mut app, 30);
         positions(&app, cloth)
     };
-    assert_eq!(hung(meeting()), hung(Cloth { self_collision: SelfCollision::Off, ..meeting() }));
+    assert_eq!(hung(meeting()), hung(Cloth { self_collision: false, ..meeting() }));
 }

@@ -116,7 +116,7 @@ fn it_wakes_in_the_step_in_which_something_changes() {
             app.world_mut().spawn(Wind { velocity: Vec3::Z, ..default() });
         }),
         ("other cloth", |app, _, _| {
-            let meets = Cloth { self_collision: SelfCollision::Robust, ..default() };
+            let meets = Cloth { self_collision: true, ..default() };
             spawn_cloth(app, GRID, (meets, Transform::from_xyz(0.0, 0.0, 0.02)));
             // It is cloth, and moves, from the next step on.
             run(app, 1);
@@ -125,7 +125,7 @@ fn it_wakes_in_the_step_in_which_something_changes() {
     for (what, disturb) in disturbances {
         let mut app = app();
         let pole = app.world_mut().spawn(Transform::default()).id();
-        let meets = Cloth { self_collision: SelfCollision::Robust, ..default() };
+        let meets = Cloth { self_collision: true, ..default() };
         let cloth = sleeper(&mut app, Pins::corners().to_entity(pole), meets);
         let before = positions(&app, cloth);
         disturb(&mut app, cloth, pole);
@@ -183,7 +183,7 @@ fn one_that_was_disabled_looks_anew_at_what_is_around() {
 #[test]
 fn cloths_that_may_touch_each_other_sleep_and_wake_together() {
     let mut app = app();
-    let meets = || Cloth { self_collision: SelfCollision::Robust, ..default() };
+    let meets = || Cloth { self_collision: true, ..default() };
     let at = |z: f32| (Pins::corners(), meets(), Transform::from_xyz(0.0, 0.0, z));
     let [one, other] = [0.0, 0.02].map(|z| spawn_cloth(&mut app, GRID, at(z)));
     let far = spawn_cloth(&mut app, GRID, at(3.0));

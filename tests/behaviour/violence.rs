@@ -143,7 +143,7 @@ fn a_cloth_that_is_scaled_up_bends_as_calmly_as_before() {
 fn a_copy_of_a_cloth_that_meets_cloth_parts_from_it() {
     for pins in [Pins::none(), Pins::indices([1]).to_world()] {
         let mut app = headless();
-        let cloth = Cloth { self_collision: SelfCollision::Robust, gravity_scale: 0.2, ..default() };
+        let cloth = Cloth { self_collision: true, gravity_scale: 0.2, ..default() };
         let cloth = spawn_cloth(&mut app, ClothGrid::new(0.25, 0.4, 2, 4), (cloth, pins));
         run(&mut app, 20);
         let copy = app.world_mut().entity_mut(cloth).clone_and_spawn();

@@ -118,12 +118,12 @@ fn what_cloth_keeps_from_itself_can_be_typed_once_it_meets_itself() {
     let cloth = spawn_cloth(&mut app, "Curtain", ());
     let mut desk = Desk::new(app);
     assert!(desk.controls(Role::Slider, "Self distance").next().is_none());
-    desk.choose(Role::ComboBox, "Self-collision", "Robust");
+    desk.click(Role::CheckBox, "Self-collision");
     for (name, text) in [("Self distance", "6 mm"), ("Self friction", "0.5"), ("Leaving speed", "2 m/s")] {
         desk.type_value(name, text);
     }
     let settings = Cloth {
-        self_collision: SelfCollision::Robust,
+        self_collision: true,
         self_distance: 0.006,
         self_friction: 0.5,
         max_depenetration_velocity: 2.0,

@@ -11,11 +11,7 @@ pub fn cloth(dice: &mut Dice) -> Cloth {
         1 | 2 => ClothSolver::Xpbd,
         _ => ClothSolver::Strands,
     };
-    let self_collision = match dice.count(0..=9) {
-        0 | 1 => SelfCollision::Robust,
-        2 => SelfCollision::Particles,
-        _ => SelfCollision::Off,
-    };
+    let self_collision = dice.chance(0.3);
     let gravity_scale = dice.one_of([1.0, 1.0, 1.0, 0.0, -1.0, 0.2, 3.0]);
     Cloth {
         solver,

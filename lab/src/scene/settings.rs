@@ -10,8 +10,8 @@ use bevy_drape::{
     build,
     prelude::ClothGrid,
     solver::{
-        Elasticity, LevelPass, Material, Method, Particles, Scratch, SelfCollision, SpringConstants, SpringKind,
-        StepSettings, SubstepPolicy, Topology,
+        Elasticity, LevelPass, Material, Method, Particles, Scratch, SpringConstants, SpringKind, StepSettings,
+        SubstepPolicy, Topology,
     },
 };
 
@@ -39,7 +39,7 @@ pub struct Settings {
     pub levels: Option<Vec<LevelPass>>,
     pub material: Material,
     pub tether_slack: f32,
-    pub self_collision: SelfCollision,
+    pub self_collision: bool,
     /// Distance that parts of cloth keep from each other, m.
     pub self_distance: f32,
     /// Distance that the cloth keeps from obstacles beside its thickness, m.
@@ -48,7 +48,7 @@ pub struct Settings {
 
 impl Settings {
     /// Those that the lab has by default: springs without air.
-    pub fn standard(n: u32, frames: u32, self_collision: SelfCollision) -> Self {
+    pub fn standard(n: u32, frames: u32, self_collision: bool) -> Self {
         let spring = |kind: SpringKind| SpringConstants { stiffness: STIFFNESS[kind.index()], damping: 0.0 };
         let springs = Elasticity::Springs(SpringKind::ALL.map(spring));
         Self {

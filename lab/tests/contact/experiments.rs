@@ -1,6 +1,5 @@
 //! The lab's experiments, watched frame by frame.
 
-use bevy_drape::solver::SelfCollision;
 use drape_lab::scene::{Look, Scene, Settings};
 
 /// What an experiment was like.
@@ -16,12 +15,12 @@ pub struct Watched {
 
 /// The lab's own settings for sheets that meet themselves.
 pub fn robust(n: u32, frames: u32) -> Settings {
-    Settings::standard(n, frames, SelfCollision::Robust)
+    Settings::standard(n, frames, true)
 }
 
 /// Those for sheets that don't.
 pub fn alone(n: u32, frames: u32) -> Settings {
-    Settings::standard(n, frames, SelfCollision::Off)
+    Settings::standard(n, frames, false)
 }
 
 /// Runs a scene for as many frames as it has time for.

@@ -48,7 +48,7 @@ use crate::{
             element8::{BendFrames, frames_of_pack, multiply_pack, pull_pack},
         },
     },
-    input::{AttachedPin, Method, SelfCollision, StepContext},
+    input::{AttachedPin, Method, StepContext},
     layout::points::Points,
     linear::sparse_rows::SparseRows,
     material::Moduli,
@@ -156,7 +156,7 @@ impl<'a> ImplicitSheet<'a> {
             laws: DirectionModuli::both(moduli, h),
             bend: BendLaw::new(topology, &ctx.material, h),
             h,
-            meets_cloth: ctx.settings.self_collision != SelfCollision::Off,
+            meets_cloth: ctx.settings.self_collision,
             farthest: FARTHEST * ctx.settings.max_velocity * h,
         })
     }

@@ -21,7 +21,7 @@ use crate::{
         },
     },
     geometry::bvh::{TriangleBvh, bounds::BvhBounds, traversal::Traversal},
-    input::{Obstacle, SelfCollision, StepContext},
+    input::{Obstacle, StepContext},
     layout::simd::SimdLevel,
     particles::{Particles, contact_load::FeatureLoad, lanes::Lanes},
     shape::{Shape, sharp_features::Sharpness},
@@ -60,8 +60,7 @@ const AGAIN_AT_OBSTACLES: u32 = 8;
 
 /// Whether two cloths meet, or one itself.
 fn meet(one: &StepContext, other: &StepContext) -> bool {
-    let is_on =
-        one.settings.self_collision != SelfCollision::Off && other.settings.self_collision != SelfCollision::Off;
+    let is_on = one.settings.self_collision && other.settings.self_collision;
     let is_same = core::ptr::eq(one, other);
     is_on && (is_same || one.settings.collision_filter.meets(other.settings.collision_filter))
 }
@@ -156,12 +155,12 @@ pub(crate) trait ClothInStep {
 
     /// Whether it meets itself or other cloths.
     fn collides(&self) -> bool {
-        self.ctx().settings.self_collision != SelfCollision::Off
+        self.ctx().settings.self_collision
     }
 
     /// Distance that it keeps from cloth, m.
-    fn self_distance(&self, mode: SelfCollision) -> f32 {
-        mode.distance_on(self.topology(), self.ctx().settings.self_distance)
+    fn self_distance(&self) -> f32 {
+        self.ctx().settings.self_distance_on(self.topology())
     }
 
     /// Its triangles.

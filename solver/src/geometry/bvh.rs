@@ -43,9 +43,6 @@ pub struct TriangleBvh {
     pub longest_edge: f32,
     /// How sharp the sharpest feature within each node is.
     sharpest: Vec<f32>,
-    /// Points that belong to the triangles of each leaf, leaf after leaf; and where those of each end.
-    points: Vec<u32>,
-    points_end: Vec<u32>,
     /// Whether each node is a patch.
     is_patch: Vec<bool>,
     /// Leaves that make up a patch with each leaf, in their order, leaf after leaf; and where those of each end.
@@ -106,7 +103,7 @@ impl TriangleBvh {
         }
     }
 
-    /// Finds which nodes are patches, which leaves are a patch together, and which points belong to each.
+    /// Finds which nodes are patches, and which leaves are a patch together.
     fn find_neighbours(&mut self) {
         let fans = patch::fans(&self.triangles);
         let mut parents = vec![0; fans.as_flattened().len()];
@@ -132,11 +129,6 @@ impl TriangleBvh {
             beside.dedup();
             self.beside.extend(beside);
             self.beside_end.push(self.beside.len() as u32);
-            for triangle in self.of_leaf(leaf) {
-                let owned = self.triangles[triangle].into_iter().zip(self.owned[triangle].corners);
-                self.points.extend(owned.filter(|&(_, sharp)| sharp > 0.0).map(|(corner, _)| corner));
-            }
-            self.points_end.push(self.points.len() as u32);
         }
     }
 
@@ -148,11 +140,6 @@ impl TriangleBvh {
     /// Whether two leaves are a patch together: they share a corner, of triangles that are connected around it.
     fn are_beside(&self, leaf: u32, other: u32) -> bool {
         self.part(&self.beside, &self.beside_end, leaf).binary_search(&other).is_ok()
-    }
-
-    /// The points that belong to the triangles of a leaf.
-    pub fn points_of_leaf(&self, leaf: u32) -> &[u32] {
-        self.part(&self.points, &self.points_end, leaf)
     }
 
     /// The part of a list that belongs to a leaf.

@@ -1,6 +1,12 @@
 //! How a cloth is solved.
 
-use crate::input::{CollisionFilter, SelfCollision, SubstepPolicy};
+use crate::{
+    input::{CollisionFilter, SubstepPolicy},
+    topology::Topology,
+};
+
+/// The largest distance between parts of a cloth, as a multiple of the mean edge: beyond it, everything would be near everything.
+const MOST_EDGES: f32 = 4.0;
 
 /// How the springs are integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,8 +44,8 @@ pub struct StepSettings {
     /// Largest speed at which a particle is pushed out of an obstacle, or of cloth, that it is inside of, m/s, greater than 0.
     /// 0.5 to 3; 1 by default.
     pub max_depenetration_velocity: f32,
-    /// How the cloth collides with itself and with other cloths. [`SelfCollision::Off`] by default.
-    pub self_collision: SelfCollision,
+    /// Whether the cloth collides with itself, and with other cloths that do too. No by default.
+    pub self_collision: bool,
     /// Distance that parts of cloth keep from each other, m, greater than 0. 0.002 to 0.01; 0.004 by default.
     pub self_distance: f32,
     /// Coulomb friction of cloth on cloth, no unit, 0 or more. 0.1 for silk, 0.4 for wool; 0.3 by default.
@@ -59,10 +65,18 @@ impl Default for StepSettings {
             tether_slack: 0.005,
             margin: 0.005,
             max_depenetration_velocity: 1.0,
-            self_collision: SelfCollision::Off,
+            self_collision: false,
             self_distance: 0.004,
             self_friction: 0.3,
             collision_filter: CollisionFilter::default(),
         }
+    }
+}
+
+impl StepSettings {
+    /// Distance that parts of such a cloth keep from each other, m: [`self_distance`](Self::self_distance), but no more than four of
+    /// its mean edges.
+    pub fn self_distance_on(&self, topology: &Topology) -> f32 {
+        self.self_distance.min(MOST_EDGES * topology.surface().mean_edge)
     }
 }

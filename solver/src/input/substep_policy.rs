@@ -31,7 +31,7 @@ pub(crate) enum ContactRisk {
     /// Something is near that the cloth may touch, a hand holds it, or no tethers do.
     Some,
     /// Its triangles and edges may meet those of cloth: what passes through is hard to bring back.
-    Robust,
+    SelfCollision,
     /// A solid with edges is near; so many substeps would take it past half an edge of the cloth in each.
     Edge(f32),
     /// One is near that ends in a tip, or fits through a stretched cell; so many substeps as of an edge.
@@ -50,8 +50,8 @@ impl SubstepPolicy {
 
     /// With fewer, a pile lets go of its order under what falls on it. As many in all steps: where they change, the load that
     /// layers bear gives them a kick.
-    const LEAST_WITH_ROBUST: f32 = 16.0;
-    const MORE_WITH_ROBUST: f32 = 1.5;
+    const LEAST_WITH_SELF_COLLISION: f32 = 16.0;
+    const MORE_WITH_SELF_COLLISION: f32 = 1.5;
 
     /// With fewer, the corner of a box comes through the triangles of a cloth that falls on it from 0.25 m; with fewer than twice
     /// as many, the tip of a cone, and a ball at 30 m/s that fits through a cell.
@@ -156,7 +156,9 @@ impl SubstepPolicy {
             ContactRisk::TipSolvedAlong(wanted) => {
                 (2.0 * wanted / factor).clamp(Self::LEAST_WITH_SHARP, Self::MOST_SOLVED_ALONG).max(substeps as f32)
             }
-            ContactRisk::Robust => (Self::MORE_WITH_ROBUST * substeps as f32).max(Self::LEAST_WITH_ROBUST),
+            ContactRisk::SelfCollision => {
+                (Self::MORE_WITH_SELF_COLLISION * substeps as f32).max(Self::LEAST_WITH_SELF_COLLISION)
+            }
             ContactRisk::Edge(wanted) => (wanted / factor).clamp(for_edges, 2.0 * for_edges),
             ContactRisk::Tip(wanted) => 2.0 * (wanted / factor).clamp(for_edges, 2.0 * for_edges),
         };

@@ -4,7 +4,7 @@ use crate::{
     constraint::{attach::grab, implicit::ImplicitSheet},
     contact::{self, feature},
     explicit::{self, Stability},
-    input::{ContactRisk, MAX_TIME_STEP, Method, Obstacle, SelfCollision, StepContext},
+    input::{ContactRisk, MAX_TIME_STEP, Method, Obstacle, StepContext},
     particles::Particles,
     scratch::Scratch,
     shape::sharp_features::Sharpness,
@@ -43,11 +43,9 @@ impl<'a> Plan<'a> {
         let longest_edge = if is_near { feature::longest_edge(near.clone(), particles, topology, ctx) } else { 0.0 };
         let is_implicit = ImplicitSheet::is_for(topology, ctx);
         let is_tethered = is_implicit || ctx.tethers.is_some_and(|tethers| !tethers.is_empty());
-        let touches = ctx.settings.self_collision != SelfCollision::Off;
         let is_on_body = !ctx.attached_pins.is_empty();
         let lesser_risks = [
             (is_near, SubstepReason::Obstacle),
-            (touches, SubstepReason::SelfCollision),
             (is_on_body, SubstepReason::OnBody),
             (!ctx.grabs.is_empty(), SubstepReason::Grabbed),
             (!is_tethered, SubstepReason::Untethered),
@@ -61,7 +59,7 @@ impl<'a> Plan<'a> {
         let risk = match (sharpest(false), ctx.settings.self_collision) {
             (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
             (Some((Sharpness::Edge, wanted)), _) => ContactRisk::Edge(wanted),
-            (None, SelfCollision::Robust) => ContactRisk::Robust,
+            (None, true) => ContactRisk::SelfCollision,
             (None, _) if some.is_some() => ContactRisk::Some,
             (None, _) => ContactRisk::None,
         };

@@ -47,12 +47,10 @@ pub enum SubstepReason {
     Grabbed,
     /// It is pinned to a body that gives way.
     OnBody,
-    /// Its particles may meet its own, or those of other cloth.
-    SelfCollision,
     /// An obstacle is near.
     Obstacle,
     /// Its triangles and edges may meet its own, or those of other cloth.
-    RobustSelfCollision,
+    SelfCollision,
     /// A solid with edges is near, or one that is thin.
     SharpEdge,
     /// A solid with a tip is near, or one that fits through a stretched cell.
@@ -71,9 +69,8 @@ impl fmt::Display for SubstepReason {
             Self::Untethered => "no tethers hold it",
             Self::Grabbed => "a hand holds it",
             Self::OnBody => "it is pinned to a body",
-            Self::SelfCollision => "self-collision of particles",
             Self::Obstacle => "an obstacle is near",
-            Self::RobustSelfCollision => "robust self-collision",
+            Self::SelfCollision => "self-collision",
             Self::SharpEdge => "something with edges, or thin, is near",
             Self::SharpTip => "something with a tip, or smaller than a cell, is near",
             Self::OtherCloth => "another cloth that it may touch needs them",
@@ -87,7 +84,7 @@ impl SubstepReason {
         match risk {
             ContactRisk::None => Self::Strain,
             ContactRisk::Some => some,
-            ContactRisk::Robust => Self::RobustSelfCollision,
+            ContactRisk::SelfCollision => Self::SelfCollision,
             ContactRisk::Edge(_) | ContactRisk::EdgeSolvedAlong(_) => Self::SharpEdge,
             ContactRisk::Tip(_) | ContactRisk::TipSolvedAlong(_) => Self::SharpTip,
         }

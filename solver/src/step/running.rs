@@ -15,7 +15,7 @@ use crate::{
     explicit::Stability,
     force::wind,
     imperfection,
-    input::{Method, SelfCollision, StepContext},
+    input::{Method, StepContext},
     integrate::{self, Motion, SpeedLimit},
     layout::simd::SimdLevel,
     parallel::grid_substep,
@@ -85,7 +85,7 @@ impl<'a> Running<'a> {
             stability,
             is_pushed,
             is_near,
-            touches: ctx.settings.self_collision != SelfCollision::Off || is_near,
+            touches: ctx.settings.self_collision || is_near,
             limit: SpeedLimit {
                 around: pin_motion::mean_velocity(ctx.pin_motions, dt),
                 most: ctx.settings.max_velocity,

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use bevy_math::Vec3A;
 use bevy_tasks::TaskPool;
 use drape_solver::{
-    AttachedPin, BodyAttachment, Grab, Material, Member, Method, Obstacle, Particles, PinMotion, Scratch,
-    SelfCollision, SourceMesh, StepContext, StepReach, StepReport, StepSettings, SubstepPolicy, Tethers, Topology,
-    WindSource, build, step,
+    AttachedPin, BodyAttachment, Grab, Material, Member, Method, Obstacle, Particles, PinMotion, Scratch, SourceMesh,
+    StepContext, StepReach, StepReport, StepSettings, SubstepPolicy, Tethers, Topology, WindSource, build, step,
 };
 
 use crate::fixtures::mesh::{Grid, topology};
@@ -39,7 +38,7 @@ pub struct Bed {
     pub max_substeps: u32,
     pub max_velocity: f32,
     pub margin: f32,
-    pub self_collision: SelfCollision,
+    pub self_collision: bool,
     pub gravity: Vec3A,
     pub fluid_density: f32,
     pub pool: Option<Arc<TaskPool>>,
@@ -72,7 +71,7 @@ impl Bed {
             max_substeps: 4096,
             max_velocity: 100.0,
             margin: 0.0,
-            self_collision: SelfCollision::Off,
+            self_collision: false,
             gravity: Vec3A::NEG_Y * GRAVITY,
             fluid_density: 1.225,
             pool: None,

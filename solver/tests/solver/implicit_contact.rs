@@ -6,7 +6,7 @@ use bevy_math::{
     Dir3, Isometry3d, Quat, Vec3, Vec3A, ops,
     primitives::{Capsule3d, Cuboid, InfinitePlane3d, Sphere},
 };
-use drape_solver::{Elasticity, Material, Moduli, Obstacle, SelfCollision, Solid, measure, step_together};
+use drape_solver::{Elasticity, Material, Moduli, Obstacle, Solid, measure, step_together};
 
 use crate::{
     bench_bed::{Bed, GRAVITY, rms, together},
@@ -36,7 +36,7 @@ fn cushion() -> Bed {
     };
     let mesh = both(half(1.0), turned_over(half(-1.0)));
     let bed = Bed::new(mesh, Material { damping: 0.2, friction: 0.5, ..Material::bare(0.15, woven()) });
-    Bed { fluid_density: 0.0, self_collision: SelfCollision::Robust, margin: 2e-3, ..bed }
+    Bed { fluid_density: 0.0, self_collision: true, margin: 2e-3, ..bed }
 }
 
 /// Energy of a bed, J.
@@ -192,7 +192,7 @@ fn a_cushion_comes_to_rest_on_a_ball() {
 fn a_sheet_comes_to_rest_on_another_that_lies_on_a_ball() {
     let mut beds = [0.0, 0.4].map(|turn| {
         let mut bed = cotton(1.0, 32, 0.2, 0.5);
-        bed.self_collision = SelfCollision::Robust;
+        bed.self_collision = true;
         bed.margin = 5e-3;
         let ball = Solid::Sphere(Sphere::new(0.4));
         bed.obstacles = vec![Obstacle::still(ball, Isometry3d::from_translation(Vec3::NEG_Y * 0.45))];
@@ -223,7 +223,7 @@ fn a_sheet_comes_to_rest_on_another_that_lies_on_a_ball() {
 }
 
 /// How far the vertices of a circle skirt have come down, on average, m, 0.6 s after it was let go: it hangs by the waist, and falls into folds.
-fn fallen_skirt(self_collision: SelfCollision, unevenness: f32) -> f32 {
+fn fallen_skirt(self_collision: bool, unevenness: f32) -> f32 {
     let cloth = uneven(Grid::new(1.0, 1.0, 100, 20).lying(), unevenness);
     let mesh = shaped(cloth, |p| {
         let (angle, radius) = ((p.x + 0.5) * TAU, 0.14 + 0.36 * (p.z + 0.5));
@@ -243,11 +243,11 @@ fn fallen_skirt(self_collision: SelfCollision, unevenness: f32) -> f32 {
 fn a_skirt_that_meets_itself_falls_into_folds_nearly_as_fast_as_one_that_does_not() {
     // One touch more or less decides where a single one folds.
     let unevennesses = [0.2, 0.21, 0.22, 0.23];
-    let average = |mode| {
-        let fallen = unevennesses.map(|unevenness| fallen_skirt(mode, unevenness));
+    let average = |self_collision| {
+        let fallen = unevennesses.map(|unevenness| fallen_skirt(self_collision, unevenness));
         fallen.iter().sum::<f32>() / fallen.len() as f32
     };
-    let [free, met] = [SelfCollision::Off, SelfCollision::Robust].map(average);
+    let [free, met] = [false, true].map(average);
     println!("fallen by {met} m, {free} m without self-collision");
     // Where the first touch of a few particles stopped the whole skirt, a third of it.
     assert!(met > 0.65 * free, "{met} m of {free} m");

@@ -1,7 +1,7 @@
 //! A step doesn't allocate, and a cloth keeps little.
 
 use bevy_math::Vec3A;
-use drape_solver::{Member, Particles, Scratch, SelfCollision, build, step, step_together};
+use drape_solver::{Member, Particles, Scratch, build, step, step_together};
 
 use crate::{
     bench_bed::{ALL, Bed, STABLE, together},
@@ -76,9 +76,7 @@ fn what_touches_allocates_nothing_once_it_has_happened() {
     }
     for method in STABLE {
         cases.push((format!("{method:?} on a body"), Box::new(move || stages::swinging(method))));
-        for of in [SelfCollision::Robust, SelfCollision::Particles] {
-            cases.push((format!("{method:?} in folds, {of:?}"), Box::new(move || stages::folded(method, of))));
-        }
+        cases.push((format!("{method:?} in folds"), Box::new(move || stages::folded(method))));
     }
     for (name, make) in &cases {
         let allocated = allocations(make, alone);

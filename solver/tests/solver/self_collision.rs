@@ -4,7 +4,7 @@ use bevy_math::{
     DVec3, Dir3, Isometry3d, Quat, Vec3, Vec3A, ops,
     primitives::{InfinitePlane3d, Sphere},
 };
-use drape_solver::{Material, Method, Obstacle, SelfCollision, Solid, SourceMesh, measure, step_together};
+use drape_solver::{Material, Method, Obstacle, Solid, SourceMesh, measure, step_together};
 
 use crate::{
     bench_bed::{Bed, STABLE, together},
@@ -23,7 +23,7 @@ fn two_sheets(method: Method, n: u32, place: impl Fn(Vec3) -> Vec3) -> Bed {
     let mesh = both(sheet, shaped(sheet, |p| p + Vec3::Y));
     let material = Material { damping: 4.0, ..springs(Springs::default()) };
     let bed = Bed::new(mesh, material).like_a_game(method);
-    let mut bed = Bed { gravity: Vec3A::ZERO, self_collision: SelfCollision::Robust, ..bed };
+    let mut bed = Bed { gravity: Vec3A::ZERO, self_collision: true, ..bed };
     for position in bed.particles.position.iter_mut().filter(|position| position.y > 0.5) {
         *position = place(Vec3::from(*position) - Vec3::Y).into();
     }
@@ -136,7 +136,7 @@ fn layers_of_one_mesh_that_face_the_same_way_lie_on_each_other() {
     for (method, piece) in STABLE.into_iter().flat_map(|method| pieces.clone().map(|piece| (method, piece))) {
         let mesh = both(piece.clone(), shaped(piece, |p| p + Vec3::Y * 0.03));
         let mut bed = Bed::new(mesh, springs(Springs::default())).like_a_game(method);
-        bed.self_collision = SelfCollision::Robust;
+        bed.self_collision = true;
         let ground = Solid::HalfSpace(InfinitePlane3d { normal: Dir3::Y });
         bed.obstacles = vec![Obstacle::still(ground, Isometry3d::from_translation(Vec3::NEG_Y * 0.1))];
         bed.run(1.0);
@@ -151,7 +151,7 @@ fn layers_of_one_mesh_that_face_the_same_way_lie_on_each_other() {
 fn sheets_that_fall_on_each_other_on_a_ball_stay_apart() {
     let mut beds = [0.0, 1.0, 2.0].map(|i| {
         let mut bed = Bed::lying(48, springs(Springs::default())).like_a_game(Method::Strands);
-        bed.self_collision = SelfCollision::Robust;
+        bed.self_collision = true;
         let ball = Solid::Sphere(Sphere::new(0.3));
         bed.obstacles = vec![Obstacle::still(ball, Isometry3d::from_translation(Vec3::NEG_Y * 0.6))];
         for place in &mut bed.particles.position {

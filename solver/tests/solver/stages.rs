@@ -11,8 +11,8 @@ use bevy_math::{
     primitives::{Cuboid, InfinitePlane3d, Sphere},
 };
 use drape_solver::{
-    AttachedPin, Body, BodyAttachment, Elasticity, Gusts, Material, Member, MeshShape, Method, Obstacle, SelfCollision,
-    Shape, Solid, SourceMesh, TriangleMesh, WindRegion, WindSource,
+    AttachedPin, Body, BodyAttachment, Elasticity, Gusts, Material, Member, MeshShape, Method, Obstacle, Shape, Solid,
+    SourceMesh, TriangleMesh, WindRegion, WindSource,
 };
 
 use crate::{
@@ -159,7 +159,7 @@ pub fn fallen_triangles() -> Stage {
 }
 
 /// A cloth in three layers that falls to the ground.
-pub fn folded(method: Method, self_collision: SelfCollision) -> Stage {
+pub fn folded(method: Method) -> Stage {
     let mut bed = Bed::lying(16, cotton()).with_substeps(16);
     // Each is beside the one below, and they open a little towards where they aren't joined.
     for place in &mut bed.particles.position {
@@ -171,7 +171,7 @@ pub fn folded(method: Method, self_collision: SelfCollision) -> Stage {
         *place = Vec3A::new(along, 0.25 + 0.0625 * layer - 0.03125 * along, place.z + 0.0078125 * layer);
     }
     bed.obstacles = vec![Obstacle::still(Solid::HalfSpace(InfinitePlane3d::default()), Isometry3d::IDENTITY)];
-    Stage::alone(Bed { method, self_collision, ..bed })
+    Stage::alone(Bed { method, self_collision: true, ..bed })
 }
 
 /// A block that cloths pull and push at, as a physics engine has it.
@@ -237,7 +237,7 @@ pub fn swinging(method: Method) -> Stage {
         arms.push((first, fixed.clone().map(at).collect()));
         let attached_pins =
             (first..first + fixed.len()).map(|i| AttachedPin { pin_motion: i as u32, attachment: 0 }).collect();
-        beds.push(Bed { method, attached_pins, self_collision: SelfCollision::Robust, ..bed }.pinned(fixed));
+        beds.push(Bed { method, attached_pins, self_collision: true, ..bed }.pinned(fixed));
     }
     let (turn, spin, velocity) = (Quat::IDENTITY, Vec3A::Y * 0.5, Vec3A::new(0.5, 0.0, 0.25));
     let mut block = Block { mass: 0.125, inertia: 0.0013, place, turn, velocity, spin, arms };

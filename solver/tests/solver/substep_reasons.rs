@@ -7,8 +7,8 @@ use bevy_math::{
     primitives::{Cone, Cuboid, Sphere},
 };
 use drape_solver::{
-    Body, DeformedPoints, Elasticity, Material, MeshShape, Method, Moduli, Obstacle, SelfCollision, Shape, Solid,
-    SubstepReason, step_together,
+    Body, DeformedPoints, Elasticity, Material, MeshShape, Method, Moduli, Obstacle, Shape, Solid, SubstepReason,
+    step_together,
 };
 
 use crate::{
@@ -47,12 +47,7 @@ fn what_raises_the_number_is_the_reason() {
     assert_eq!(reason_of(Bed { tethers: None, ..hung() }), SubstepReason::Untethered);
     let held = Bed { grabs: vec![hand(&hung(), 30, [0.3, 0.3, 0.4], Grip::default())], ..hung() };
     assert_eq!(reason_of(held), SubstepReason::Grabbed);
-    for (self_collision, reason) in [
-        (SelfCollision::Particles, SubstepReason::SelfCollision),
-        (SelfCollision::Robust, SubstepReason::RobustSelfCollision),
-    ] {
-        assert_eq!(reason_of(Bed { self_collision, ..hung() }), reason);
-    }
+    assert_eq!(reason_of(Bed { self_collision: true, ..hung() }), SubstepReason::SelfCollision);
     assert_eq!(reason_of(above(Solid::Sphere(Sphere::new(5.0)), 5.0)), SubstepReason::Obstacle);
     assert_eq!(reason_of(above(Solid::Cuboid(Cuboid::from_length(0.4)), 0.2)), SubstepReason::SharpEdge);
     assert_eq!(reason_of(above(Solid::Cone(Cone { radius: 0.1, height: 0.4 }), 0.2)), SubstepReason::SharpTip);
@@ -109,13 +104,10 @@ fn a_closed_mesh_and_a_step_without_time_have_their_reasons() {
 
 #[test]
 fn the_one_that_needs_fewer_names_the_other_cloth() {
-    let mut beds = [
-        Bed { self_collision: SelfCollision::Robust, ..hung() },
-        Bed { self_collision: SelfCollision::Robust, ..hung().with_substeps(3) },
-    ];
+    let mut beds = [Bed { self_collision: true, ..hung() }, Bed { self_collision: true, ..hung().with_substeps(3) }];
     let reasons = together(&mut beds, STEP, |members| {
         step_together(members);
         members.iter().map(|member| member.report.expect("it was stepped").reason).collect::<Vec<_>>()
     });
-    assert_eq!(reasons, [SubstepReason::RobustSelfCollision, SubstepReason::OtherCloth]);
+    assert_eq!(reasons, [SubstepReason::SelfCollision, SubstepReason::OtherCloth]);
 }

@@ -8,17 +8,15 @@ use crate::{
         triangle_pack::LeafPacks,
     },
     geometry::bvh::bounds::BvhBounds,
-    input::SelfCollision,
 };
 
 /// Distance that edges of cloth keep from each other, as a share of that of corners from faces: these hold layers apart, and the edges
 /// of layers that lie on each other are far more pairs.
 const EDGE_SHARE: f32 = 0.8;
 
-/// By how much boxes around a cloth's ways are larger than what is in them, m. With a ball against a robust cloth, the larger
-/// distance counts.
+/// By how much boxes around a cloth's ways are larger than what is in them, m.
 fn margin(cloth: &impl ClothInStep) -> f32 {
-    0.5 * cloth.self_distance(cloth.ctx().settings.self_collision)
+    0.5 * cloth.self_distance()
 }
 
 impl FeatureContacts {
@@ -88,9 +86,7 @@ impl FeatureContacts {
             true => traversal.within(a.surface, a.places, |p, q| leaves.push((p, q))),
             false => traversal.between((a.surface, a.places), (b.surface, b.places), |p, q| leaves.push((p, q))),
         }
-        // The more careful of the two ways.
-        let mode = cloths[i].ctx().settings.self_collision.max(cloths[j].ctx().settings.self_collision);
-        let distance = 0.5 * (cloths[i].self_distance(mode) + cloths[j].self_distance(mode));
+        let distance = 0.5 * (cloths[i].self_distance() + cloths[j].self_distance());
         let reach = QueryMargin {
             distance,
             edge_distance: if *is_solved_along { distance } else { EDGE_SHARE * distance },
@@ -101,10 +97,6 @@ impl FeatureContacts {
             rest: (i == j).then_some(&*cloths[i].topology().rest),
         };
         for &(p, q) in &*leaves {
-            if mode == SelfCollision::Particles {
-                narrow_phase::balls_between((&a, p), (&b, q), &reach, |found| pairs.push(found.pair));
-                continue;
-            }
             let (leaf, other_leaf) = (a.surface.of_leaf(p).start, b.surface.of_leaf(q).start);
             packs[i].make(a.surface, p, &a.ways, &a.places.of_triangles);
             packs[j].make(b.surface, q, &b.ways, &b.places.of_triangles);

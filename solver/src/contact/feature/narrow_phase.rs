@@ -219,25 +219,6 @@ pub fn back_through((a, s): (&ContactSide, usize), (b, tip): (&ContactSide, u32)
     Candidate { pair, is_first_of_a: false, face: s, nearest }
 }
 
-/// Shows the pairs of points of leaf `p` of `a` and leaf `q` of `b` that may touch as balls.
-pub fn balls_between(
-    (a, p): (&ContactSide, u32),
-    (b, q): (&ContactSide, u32),
-    reach: &QueryMargin,
-    mut found: impl FnMut(Candidate),
-) {
-    let is_one_leaf = reach.rest.is_some() && p == q;
-    for &point in a.surface.points_of_leaf(p) {
-        let way = a.way_of(point);
-        for &other in b.surface.points_of_leaf(q) {
-            // Of a leaf with itself, each two points once.
-            if !(is_one_leaf && point >= other) && way.meets(&b.way_of(other)) {
-                found_between(Features::PointPoint, [a, b, b, b], [point, other, other, other], reach, &mut found);
-            }
-        }
-    }
-}
-
 /// Cosine of the angle between triangles that share a corner from which on they are near to folding up.
 const OPEN: f32 = 0.3;
 
@@ -278,7 +259,7 @@ fn found_between(
     let places = [s0.place(p0), s1.place(p1), s2.place(p2), s3.place(p3)];
     let [w0, w1, w2, w3] = [s0.way(p0), s1.way(p1), s2.way(p2), s3.way(p3)];
     let (distance, taper) = match features {
-        Features::PointFace | Features::PointPoint => (reach.distance + sides[0].radius(points[0]), 0.0),
+        Features::PointFace => (reach.distance + sides[0].radius(points[0]), 0.0),
         Features::EdgeEdge => {
             let near = sides[2].radius(points[2]);
             (reach.edge_distance + near, sides[3].radius(points[3]) - near)
@@ -287,14 +268,12 @@ fn found_between(
     let apart = |p: Vec3A, q: Vec3A| p.distance_squared(q);
     let approach = match features {
         Features::PointFace => apart(w0, w1).max(apart(w0, w2)).max(apart(w0, w3)),
-        Features::PointPoint => apart(w0, w1),
         Features::EdgeEdge => apart(w0, w2).max(apart(w0, w3)).max(apart(w1, w2)).max(apart(w1, w3)),
     };
     let slack_of = |side: &ContactSide, point: u32| side.ways.slack(point as usize);
     let [l0, l1, l2, l3] = [slack_of(s0, p0), slack_of(s1, p1), slack_of(s2, p2), slack_of(s3, p3)];
     let of_points = match features {
         Features::PointFace => l0 + l1.max(l2).max(l3),
-        Features::PointPoint => l0 + l1,
         Features::EdgeEdge => l0.max(l1) + l2.max(l3),
     };
     let slack = reach.slack + of_points;
@@ -311,7 +290,7 @@ fn found_between(
         let direction = nearest.between / squared.sqrt();
         let [a, b, c, d] = [places[0] + w0, places[1] + w1, places[2] + w2, places[3] + w3].map(|p| direction.dot(p));
         let gap = match features {
-            Features::PointFace | Features::PointPoint => a - b.max(c).max(d),
+            Features::PointFace => a - b.max(c).max(d),
             Features::EdgeEdge => a.min(b) - c.max(d),
         };
         if gap > margin {

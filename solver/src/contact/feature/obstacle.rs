@@ -268,8 +268,6 @@ fn thickness(pair: &FeatureContact, radii: &[f32], position: &[Vec3A], first: u3
     let (radius, [p, q, r]) = match pair.features {
         Features::PointFace => (radius(a), [b, c, d].map(place)),
         Features::EdgeEdge => (radius(c).max(radius(d)), [a, b, b].map(place)),
-        // Obstacles have none.
-        Features::PointPoint => return 0.0,
     };
     let longest = p.distance_squared(q).max(q.distance_squared(r)).max(r.distance_squared(p));
     if 4.0 * radius * radius < longest { radius } else { 0.0 }

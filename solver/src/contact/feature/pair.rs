@@ -1,4 +1,4 @@
-//! Contact between two features that may touch: a point and a face, two edges, or two points.
+//! Contact between two features that may touch: a point and a face, or two edges.
 //!
 //! ```text
 //!      0                 0 ----- 1
@@ -38,8 +38,6 @@ pub enum Features {
     PointFace,
     /// The edge of the first two points and that of the others.
     EdgeEdge,
-    /// The first point and the second; the others are the same as that.
-    PointPoint,
 }
 
 /// Two features that may touch.
@@ -99,7 +97,6 @@ impl Features {
                 let (s, t) = closest_point::on_edges([a, b], [c, d]);
                 [1.0 - s, s, t - 1.0, -t]
             }
-            Self::PointPoint => [1.0, -1.0, 0.0, 0.0],
         };
         ClosestPoints { weights, between: weighted(weights, [a, b, c, d]) }
     }
@@ -111,7 +108,6 @@ impl Features {
         match self {
             Self::PointFace => a - b.max(c).max(d) > distance,
             Self::EdgeEdge => a.min(b) - c.max(d) > distance,
-            Self::PointPoint => a - b > distance,
         }
     }
 }
@@ -265,7 +261,7 @@ impl FeatureContact {
         }
         // Of an edge's places, the far end is at weight 1.
         let distance = match self.features {
-            Features::PointFace | Features::PointPoint => self.distance,
+            Features::PointFace => self.distance,
             Features::EdgeEdge => self.distance - self.taper * weights[3],
         };
         Separation { weights, normal, gap, distance }
@@ -275,10 +271,6 @@ impl FeatureContact {
     fn has_passed(&self, before: [Vec3A; 4], after: [Vec3A; 4]) -> bool {
         let [b0, b1, b2, b3] = before;
         let [a0, a1, a2, a3] = after;
-        if self.features == Features::PointPoint {
-            // Balls are passed by.
-            return false;
-        }
         // Six times the volume between the four points is zero where they are in one plane.
         let volume = |[p, q, r, s]: [Vec3A; 4]| (q - p).cross(r - p).dot(s - p);
         let (start, end) = (volume([b0, b1, b2, b3]), volume([a0, a1, a2, a3]));

@@ -6,7 +6,6 @@ use bevy_math::Vec3A;
 
 use crate::{
     contact::feature::{ClothInStep, FeatureContacts, narrow_phase::Displacements, obstacle::ClothMotion},
-    input::SelfCollision,
     particles::lanes::Lanes,
 };
 
@@ -174,7 +173,7 @@ impl FeatureContacts {
 
     /// Whether a particle is too far off its way towards other cloth at the moment `now` (0..=1) of the step, before pairs are solved.
     fn has_come_off_to_cloth(&self, cloths: &[impl ClothInStep], now: f32) -> bool {
-        let late = |cloth: usize| LATE * cloths[cloth].self_distance(SelfCollision::Robust);
+        let late = |cloth: usize| LATE * cloths[cloth].self_distance();
         self.is_any_off(&self.points.position, now, |cloth, particle| self.slack[particle] + late(cloth))
     }
 

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-const ALL: [Features; 3] = [Features::PointFace, Features::EdgeEdge, Features::PointPoint];
+const ALL: [Features; 2] = [Features::PointFace, Features::EdgeEdge];
 
 fn point() -> impl Strategy<Value = Vec3A> {
     prop::array::uniform3(-1.0_f32..1.0).prop_map(Vec3A::from)
@@ -26,7 +26,6 @@ impl Features {
                 .filter(|weights| weights[1] <= 1e-6)
                 .collect(),
             Self::EdgeEdge => shares().flat_map(|s| shares().map(move |t| [1.0 - s, s, t - 1.0, -t])).collect(),
-            Self::PointPoint => vec![[1.0, -1.0, 0.0, 0.0]],
         }
     }
 
@@ -50,14 +49,12 @@ fn points(position: [Vec3A; 4], previous: [Vec3A; 4], inverse_mass: [f32; 4]) ->
     }
 }
 
-/// Numbers of the points of a pair that has four, or two.
-fn numbers(features: Features) -> [u32; 4] {
-    if features == Features::PointPoint { [0, 1, 1, 1] } else { [0, 1, 2, 3] }
-}
+/// Numbers of the points of a pair.
+const NUMBERS: [u32; 4] = [0, 1, 2, 3];
 
 /// A pair whose features were `gap` (m) apart along `normal`.
 fn pair(features: Features, distance: f32, gap: f32, normal: Vec3A) -> FeatureContact {
-    let points = numbers(features);
+    let points = NUMBERS;
     FeatureContact {
         features,
         points,
@@ -135,7 +132,7 @@ proptest! {
         prop_assert!(pair.solve(&mut points, most_parted, None).is_some() || most_parted == 0.0);
         let by = (distance.min(old_gap + most_parted) - gap).max(0.0);
         let expected = moved(weights, inverse_mass, between / gap * by);
-        for i in 0..if features == Features::PointPoint { 2 } else { 4 } {
+        for i in 0..4 {
             let off = (points.position[i] - places[i]).as_dvec3().distance(expected[i]);
             prop_assert!(off < 1e-4, "{i}: {off} m");
             // What parts of what was too near before gains no speed.
@@ -143,7 +140,7 @@ proptest! {
             let penetration = if depenetration.is_some() { DVec3::ZERO } else { expected[i] };
             prop_assert!(way.as_dvec3().distance(penetration) < 1e-4, "{i}: {way} for {penetration}");
         }
-        let after = weighted(weights, core::array::from_fn(|i| points.position[numbers(features)[i] as usize]));
+        let after = weighted(weights, core::array::from_fn(|i| points.position[NUMBERS[i] as usize]));
         prop_assert!((after.dot(between / gap) - gap - by).abs() < 1e-4);
         prop_assert!((pair.gap - gap - by).abs() < 1e-5);
     }
@@ -181,7 +178,7 @@ proptest! {
         let mut points = points(places, previous, inverse_mass);
         let mut pair = FeatureContact { friction, ..pair(features, 1.5 * gap, 1.5 * gap, normal) };
         prop_assert!(pair.solve(&mut points, 0.0, None).is_some());
-        let at = |points: &[Vec3A]| weighted(weights, numbers(features).map(|i| points[i as usize]));
+        let at = |points: &[Vec3A]| weighted(weights, NUMBERS.map(|i| points[i as usize]));
         let left = at(&points.position) - at(&points.previous);
         let left = left - normal * left.dot(normal);
         let taken = slide.length().min(friction * 0.5 * gap);
