@@ -273,10 +273,8 @@ impl FeatureContacts {
         self.at_obstacles.clear();
         let mut touched = 0;
         for pass in 0..passes {
-            // In the first, what was too near before parts as far as it may.
-            let most_parted = if pass == 0 { most_parted } else { 0.0 };
             let solved = match is_on_bodies {
-                true => self.solve_each_on_bodies(cloths, span.clone(), most_parted),
+                true => self.solve_each_on_bodies(cloths, span.clone(), most_parted, pass == 0),
                 false => self.solve_each(most_parted, pass == 0),
             };
             touched = solved.touched.max(touched);
@@ -289,15 +287,19 @@ impl FeatureContacts {
     }
 
     /// Solves all pairs, one after the other. The first time, notes those that touched an obstacle.
-    fn solve_each(&mut self, most_parted: f32, is_first: bool) -> SolvedPairs {
+    fn solve_each(&mut self, most_parted: f32, is_first_pass: bool) -> SolvedPairs {
         let count = self.particle_count() as u32;
         let Self { pairs, points, at_obstacles, .. } = self;
         let mut solved = SolvedPairs::default();
         for (i, pair) in pairs.iter_mut().enumerate() {
-            let Some(touch) = pair.solve(points, most_parted, None) else { continue };
+            let touch = match is_first_pass {
+                true => pair.solve(points, most_parted, None),
+                false => pair.solve_again(points, most_parted, None),
+            };
+            let Some(touch) = touch else { continue };
             let is_at_obstacle = pair.points.iter().any(|&point| point >= count);
             solved.note(pair, &touch, is_at_obstacle);
-            if is_at_obstacle && is_first {
+            if is_at_obstacle && is_first_pass {
                 at_obstacles.push(i as u32);
             }
         }

@@ -29,7 +29,7 @@ const BENT: [u64; 1] = [0x0a147195f5e25ce5];
 const CONTACT: [u64; 4] = [0x41c38947138fd2cb, 0xf0529a38e4bbc032, 0xcc7fb1ef65bdb53b, 0xe4d07bf40747a555];
 
 /// Triangles by both methods, particles as balls.
-const SELF_COLLISION: [u64; 2] = [0x7707c266cf4643e5, 0x1abf5da955c9997f];
+const SELF_COLLISION: [u64; 2] = [0x24259194ef0dcb43, 0xc4dde1f3371c134f];
 
 /// By both methods.
 const MOVING_BODY: [u64; 2] = [0x0e3864214803d28d, 0xd4eb7442f8be9bf5];

@@ -90,6 +90,7 @@ impl FeatureContacts {
         cloths: &mut [impl ClothInStep],
         span: Range<f32>,
         most_parted: f32,
+        is_first_pass: bool,
     ) -> SolvedPairs {
         let count = self.start.len();
         let mut solved = SolvedPairs::default();
@@ -97,7 +98,11 @@ impl FeatureContacts {
             let mut pair = self.pairs[i];
             let is_first = pair.points[0] as usize >= count;
             let on = self.body_of(cloths, &pair.points, is_first, span.end);
-            let touch = pair.solve(&mut self.points, most_parted, on.as_ref().map(TouchedBody::on).as_ref());
+            let body = on.as_ref().map(TouchedBody::on);
+            let touch = match is_first_pass {
+                true => pair.solve(&mut self.points, most_parted, body.as_ref()),
+                false => pair.solve_again(&mut self.points, most_parted, body.as_ref()),
+            };
             self.pairs[i] = pair;
             if let Some(touch) = touch {
                 solved.note(&pair, &touch, pair.points.iter().any(|&point| point as usize >= count));

@@ -213,6 +213,7 @@ pub fn back_through((a, s): (&ContactSide, usize), (b, tip): (&ContactSide, u32)
         friction: reach.friction,
         gap: -length,
         normal,
+        gap_before: 0.0,
         load: 0.0,
         is_solved_by_cloth: false,
     };
@@ -309,6 +310,7 @@ fn found_between(
         friction: reach.friction,
         gap: length,
         normal,
+        gap_before: 0.0,
         load: 0.0,
         is_solved_by_cloth: false,
     };

@@ -31,6 +31,9 @@ pub struct FeaturePoints {
     pub has_parted: bool,
 }
 
+/// What was nearer before than this share of the distance to keep was far too near.
+const FAR_TOO_NEAR: f32 = 0.7;
+
 /// What kind of features a pair has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Features {
@@ -54,6 +57,8 @@ pub struct FeatureContact {
     pub friction: f32,
     /// Distance when it was last looked at, m; negative after having passed through.
     pub gap: f32,
+    /// Distance when the substep began, m.
+    pub gap_before: f32,
     /// Unit vector from the second feature to the first, on the side where it belongs.
     pub normal: Vec3A,
     /// Normal force in the latest substep, N, where the cloth's implicit step has found one.
@@ -148,7 +153,7 @@ pub struct Impulse {
 /// How two features touched.
 #[derive(Clone, Copy, Debug)]
 pub struct Touch {
-    /// How much nearer they were than they should be, m.
+    /// How much nearer they were than they are now, m.
     pub depth: f32,
     /// What the obstacle among them got, if it is a body.
     pub impulse: Impulse,
@@ -209,6 +214,7 @@ impl FeatureContact {
     #[inline]
     pub fn solve(&mut self, points: &mut FeaturePoints, most_parted: f32, body: Option<&BodyContact>) -> Option<Touch> {
         let farthest = self.distance + self.taper.max(0.0);
+        self.gap_before = self.gap;
         if self.is_beyond(points, farthest) {
             self.gap = farthest;
             return None;
@@ -239,6 +245,19 @@ impl FeatureContact {
         let impulse = parting.apply(points, body)?;
         self.gap = target;
         Some(Touch { depth: target - gap, impulse })
+    }
+
+    /// Does the same once more within a substep, where other pairs have undone it. What was far too near before doesn't part this time:
+    /// cloth that lies in itself, as a copy does, would be thrown.
+    pub fn solve_again(
+        &mut self,
+        points: &mut FeaturePoints,
+        most_parted: f32,
+        body: Option<&BodyContact>,
+    ) -> Option<Touch> {
+        self.gap = self.gap_before;
+        let was_apart = self.gap > FAR_TOO_NEAR * self.distance;
+        self.solve(points, if was_apart { most_parted } else { 0.0 }, body)
     }
 
     /// Whether all of the first feature is farther than `distance` (m) from all of the second, along the latest normal.

@@ -63,6 +63,7 @@ fn pair(features: Features, distance: f32, gap: f32, normal: Vec3A) -> FeatureCo
         friction: 0.0,
         gap,
         normal,
+        gap_before: 0.0,
         load: 0.0,
         is_solved_by_cloth: false,
     }
