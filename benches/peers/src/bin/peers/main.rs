@@ -10,6 +10,8 @@ use clap::Parser;
 
 #[cfg(feature = "jolt")]
 mod jolt;
+#[cfg(feature = "rapier")]
+mod rapier;
 #[cfg(feature = "silk")]
 mod silk;
 
@@ -30,6 +32,8 @@ fn main() {
         silk::sweep,
         #[cfg(feature = "jolt")]
         jolt::sweep,
+        #[cfg(feature = "rapier")]
+        rapier::sweep,
     ];
     for n in Cli::parse().n {
         let cloth = Cloth::hanging(n.into());
