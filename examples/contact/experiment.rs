@@ -43,17 +43,17 @@ impl Experiment {
 
     pub fn scene(self, n: u32, substeps: Option<u32>) -> io::Result<Scene> {
         let settings = |self_collision| Settings { substeps, ..Settings::standard(n, 300, self_collision) };
-        let (alone, robust) = (settings(false), settings(true));
+        let (alone, self_colliding) = (settings(false), settings(true));
         match self {
             Self::Drape => {
                 let cloth = alone.cloth(&alone.grid(1.0, 1.0).lying().into())?;
                 Ok(drape::on_ball(&alone, [drape::raised(cloth)]))
             }
-            Self::Fold => fold::fold(&robust),
-            Self::Ribbon => ribbon::ribbon(&robust),
-            Self::Twist => twist::twist(&robust),
-            Self::Layers => layers::layers(&robust),
-            Self::Storm => storm::storm(&robust),
+            Self::Fold => fold::fold(&self_colliding),
+            Self::Ribbon => ribbon::ribbon(&self_colliding),
+            Self::Twist => twist::twist(&self_colliding),
+            Self::Layers => layers::layers(&self_colliding),
+            Self::Storm => storm::storm(&self_colliding),
             Self::Needle => needle::needle(&alone, needle::Sharp::Needle),
             Self::Bullet => bullet::ball(&alone, 0.02),
         }

@@ -14,7 +14,7 @@ pub struct Watched {
 }
 
 /// The lab's own settings for sheets that meet themselves.
-pub fn robust(n: u32, frames: u32) -> Settings {
+pub fn self_colliding(n: u32, frames: u32) -> Settings {
     Settings::standard(n, frames, true)
 }
 

@@ -6,7 +6,7 @@
 use bevy_drape::solver::Method;
 use drape_lab::scene::{Scene, Settings, fold, layers, ribbon, storm, twist};
 
-use crate::experiments::{bits_after, robust, watch};
+use crate::experiments::{bits_after, self_colliding, watch};
 
 /// Substeps of a frame that are more than the strain asks for.
 const ENOUGH: u32 = 32;
@@ -15,7 +15,7 @@ const ENOUGH: u32 = 32;
 const WANTED: f32 = 0.001;
 
 fn with_enough(n: u32, frames: u32) -> Settings {
-    Settings { substeps: Some(ENOUGH), ..robust(n, frames) }
+    Settings { substeps: Some(ENOUGH), ..self_colliding(n, frames) }
 }
 
 /// Expects a scene to end with no two triangles that pass through each other, of which at most the share `moving` did before,
@@ -30,26 +30,26 @@ fn assert_untangled(scene: Scene, moving: f32, depth: f32) {
 
 #[test]
 fn a_cloth_that_falls_into_folds_does_not_pass_through_itself() {
-    assert_untangled(fold::fold(&robust(16, 240)).unwrap(), 0.0, 1e-3);
+    assert_untangled(fold::fold(&self_colliding(16, 240)).unwrap(), 0.0, 1e-3);
 }
 
 #[test]
 fn a_ribbon_that_falls_into_a_pile_ends_without_tangles() {
     assert_untangled(ribbon::ribbon(&with_enough(32, 240)).unwrap(), WANTED, 1e-4);
-    assert_untangled(ribbon::ribbon(&robust(32, 300)).unwrap(), WANTED, 1e-3);
+    assert_untangled(ribbon::ribbon(&self_colliding(32, 300)).unwrap(), WANTED, 1e-3);
 }
 
 #[test]
 fn a_strip_that_is_twisted_and_turned_back_ends_as_it_began() {
     assert_untangled(twist::twist(&with_enough(32, 300)).unwrap(), WANTED, 0.0);
-    assert_untangled(twist::twist(&robust(32, 300)).unwrap(), WANTED, 0.0);
+    assert_untangled(twist::twist(&self_colliding(32, 300)).unwrap(), WANTED, 0.0);
 }
 
 #[test]
 fn a_strip_that_is_twisted_into_a_tight_rope_does_not_pass_through_itself() {
     // Pairs that are solved once a substep are pulled through each other, with some numbers of substeps and not with others.
     for (substeps, frames) in [(28, 300), (31, 300), (34, 240), (36, 240)] {
-        let settings = Settings { substeps: Some(substeps), ..robust(32, frames) };
+        let settings = Settings { substeps: Some(substeps), ..self_colliding(32, frames) };
         assert_untangled(twist::twist(&settings).unwrap(), WANTED, 0.0);
     }
 }
@@ -63,17 +63,17 @@ fn three_cloths_that_fall_on_each_other_keep_their_order() {
         assert!(watched.worst.penetration <= 1e-3, "{watched:?}");
     };
     order(&with_enough(12, 120));
-    order(&robust(12, 150));
+    order(&self_colliding(12, 150));
 }
 
 #[test]
 fn a_flag_in_a_storm_does_not_pass_through_itself() {
-    assert_untangled(storm::storm(&robust(16, 300)).unwrap(), WANTED, 0.0);
+    assert_untangled(storm::storm(&self_colliding(16, 300)).unwrap(), WANTED, 0.0);
 }
 
 #[test]
 fn the_other_method_keeps_its_folds_apart_too() {
-    let settings = Settings { method: Method::Xpbd, substeps: Some(ENOUGH), ..robust(16, 180) };
+    let settings = Settings { method: Method::Xpbd, substeps: Some(ENOUGH), ..self_colliding(16, 180) };
     assert_untangled(fold::fold(&settings).unwrap(), WANTED, 1e-3);
     assert_untangled(ribbon::ribbon(&Settings { n: 32, ..settings }).unwrap(), WANTED, 1e-3);
 }
@@ -89,10 +89,10 @@ fn what_happens_does_not_depend_on_what_the_scratch_was_used_for() {
         ("storm", storm::storm, 12),
     ];
     // Something that has touched, of another size.
-    let mut other = fold::fold(&robust(20, 60)).unwrap();
+    let mut other = fold::fold(&self_colliding(20, 60)).unwrap();
     bits_after(&mut other, 40);
     for (name, make, n) in scenes {
-        let made = || make(&robust(n, 60)).unwrap();
+        let made = || make(&self_colliding(n, 60)).unwrap();
         let first = bits_after(&mut made(), 60);
         assert_eq!(first, bits_after(&mut made(), 60), "{name}: a second time");
         let mut after = made();

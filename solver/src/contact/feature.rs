@@ -239,8 +239,7 @@ impl FeatureContacts {
         self.tangles.clear();
     }
 
-    /// Keeps features apart within the part `span` (0..=1) of the step, a substep of `h` seconds. Returns how
-    /// many touched.
+    /// Keeps features apart within the part `span` (0..=1) of the step, a substep of `h` seconds.
     pub fn solve(&mut self, cloths: &mut [impl ClothInStep], span: Range<f32>, h: f32, dt: f32) -> SolvedFeatures {
         if self.is_searched {
             self.read_loads(cloths);
