@@ -229,6 +229,9 @@
 //! ([`ClothWokeUp`](prelude::ClothWokeUp)). [`ClothStatus::is_running`](prelude::ClothStatus::is_running) is true of both;
 //! [`ClothSleepingDisabled`](prelude::ClothSleepingDisabled) forbids it.
 //!
+//! [`ClothBudget`](prelude::ClothBudget) limits the time that all cloth takes: what is far from all cameras gets fewer substeps
+//! first. [`Cloth::max_work`](prelude::Cloth::max_work) limits one cloth.
+//!
 //! # Determinism
 //!
 //! The same input gives the same bits: on one thread or several, whatever instructions the processor has, and whatever
@@ -369,6 +372,7 @@ pub mod prelude {
         mesh_input::{ATTRIBUTE_WARP, ClothGrid},
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
+        simulate::budget::ClothBudget,
         solver::{Ellipsoid, LevelPass, MeshError, Solid, TaperedCapsule},
         state::{
             ClothAttachments, ClothFailed, ClothFellAsleep, ClothGrabbed, ClothGrabs, ClothGrip, ClothPoint,

@@ -94,6 +94,8 @@ impl Plugin for ClothPlugin {
     fn build(&self, app: &mut App) {
         fabric::loader::register(app);
         app.init_resource::<surroundings::ClothGravity>()
+            .init_resource::<simulate::budget::ClothBudget>()
+            .init_resource::<simulate::budget::StepDuration>()
             .init_resource::<collider::Obstacles>()
             .init_resource::<changes::ObstacleChanges>()
             .init_resource::<wind::Winds>()
@@ -146,7 +148,12 @@ impl Plugin for ClothPlugin {
                     )
                         .chain()
                         .in_set(ClothSystems::Gather),
-                    (changes::find_changes, simulate::step_cloths, changes::forget_changes)
+                    (
+                        changes::find_changes,
+                        simulate::budget::divide_budget,
+                        simulate::step_cloths,
+                        changes::forget_changes,
+                    )
                         .chain()
                         .in_set(ClothSystems::Simulate),
                     simulate::report_steps.in_set(ClothSystems::Finalize),

@@ -10,6 +10,7 @@ use bevy::{
     tasks::TaskPool,
 };
 
+pub(crate) mod budget;
 mod meeting;
 mod sleep;
 
@@ -27,6 +28,7 @@ use crate::{
         wind::Winds,
     },
 };
+use budget::StepDuration;
 use meeting::Stepped;
 
 /// Working memory for as many cloths as are stepped at a time, which is far less than for all.
@@ -60,6 +62,7 @@ pub(crate) fn step_cloths(
     run: Res<ClothRun>,
     (time, step): (Res<Time>, Res<StepNumber>),
     surroundings: Surroundings,
+    mut duration: ResMut<StepDuration>,
     scratch_pool: Local<ScratchPool>,
     _main_thread: NonSendMarker,
 ) {
@@ -75,9 +78,11 @@ pub(crate) fn step_cloths(
     let (dt, pool) = (time.delta_secs(), frame::pool(run.parallel));
     let mut groups = meeting::group(running, dt);
     groups.retain_mut(|group| dt <= 0.0 || !sleep::sleep_on(group, &surroundings));
+    let begun = Instant::now();
     frame::for_each(groups, run.parallel, |mut group| {
         step_group(&mut group, dt, gravity, &surroundings, pool, &scratch_pool);
     });
+    duration.0 = begun.elapsed().as_secs_f32();
 }
 
 /// Steps cloths that may touch each other by `dt` seconds.
@@ -166,6 +171,7 @@ impl<'a> Parts<'a> {
             owners,
             winds: felt,
             jump,
+            allowance,
             ..
         } = &mut *cloth.input;
         surroundings.winds.around(*origin, felt);
@@ -178,6 +184,7 @@ impl<'a> Parts<'a> {
             grabs,
             tethers: settings.tether_slack.map(|_| cloth.attachments.as_tethers()),
             winds: felt,
+            substep_limit: allowance.substeps.min(settings.substep_limit(particles.len())),
             pool,
             ..StepContext::new(dt, solver, material)
         };

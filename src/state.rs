@@ -13,6 +13,7 @@ use crate::solver::{
     self, Energy, Material, MeshStructure, Particles, Strain, Topology, build::weld::NO_PARTICLE, measure,
 };
 
+mod allowance;
 mod attachments;
 mod forces;
 mod grabs;
@@ -28,6 +29,7 @@ mod status;
 mod step_input;
 mod width;
 
+pub(crate) use allowance::Allowance;
 pub use attachments::ClothAttachments;
 pub(crate) use attachments::HeldPin;
 pub(crate) use grabs::HeldGrab;

@@ -62,6 +62,9 @@ pub struct StepContext<'a> {
     pub obstacles: &'a [Obstacle],
     /// All winds that may reach the cloth. None by default.
     pub winds: &'a [WindSource],
+    /// The most substeps that the step may take, 1 or more, whatever asks for more: a budget. Not for [`Method::Explicit`], which
+    /// has [`StepSettings::max_substeps`]. As many as are asked for, by default.
+    pub substep_limit: u32,
     /// Threads that may help with a large cloth. The bits are the same without, as by default.
     pub pool: Option<&'a TaskPool>,
 }
@@ -83,6 +86,7 @@ impl<'a> StepContext<'a> {
             tethers: None,
             obstacles: &[],
             winds: &[],
+            substep_limit: u32::MAX,
             pool: None,
         }
     }

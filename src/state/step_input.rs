@@ -2,6 +2,7 @@
 
 use bevy::prelude::*;
 
+use super::Allowance;
 use crate::{
     frame::Jump,
     solver::{AttachedPin, BodyAttachment, BodyDisplacement, BodyImpulse, Grab, Obstacle, PinMotion, WindSource},
@@ -23,6 +24,8 @@ pub(crate) struct StepInput {
     pub winds: Vec<WindSource>,
     /// The jump that the cloth has made before the step.
     pub jump: Option<Jump>,
+    /// What its budget allows it.
+    pub allowance: Allowance,
     /// What the bodies among all these have been given by the latest step.
     pub pushes: Vec<BodyPush>,
 }

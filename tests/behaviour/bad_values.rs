@@ -37,10 +37,11 @@ const SPRINGS: [Field<ClothSprings>; 6] = [
     ("ClothSprings::bend_damping", |springs, value| springs.bend_damping = value),
 ];
 
-const CLOTH: [Field<Cloth>; 11] = [
+const CLOTH: [Field<Cloth>; 12] = [
     ("Cloth::max_strain", |cloth, value| cloth.max_strain = value),
     ("Cloth::substeps", |cloth, value| cloth.substeps = Some(value as u32)),
     ("Cloth::max_substeps", |cloth, value| cloth.max_substeps = value as u32),
+    ("Cloth::max_work", |cloth, value| cloth.max_work = Some(value as u32)),
     ("Cloth::gravity_scale", |cloth, value| cloth.gravity_scale = value),
     ("Cloth::max_velocity", |cloth, value| cloth.max_velocity = value),
     ("Cloth::tether_slack", |cloth, value| cloth.tether_slack = Some(value)),
@@ -126,7 +127,7 @@ fn cloths_are_checked_field_by_field() {
     let mut app = headless();
     for (name, set) in CLOTH {
         let mut refused = |value| refused_for(&mut app, with(set, value));
-        let is_count = name.ends_with("substeps");
+        let is_count = name.ends_with("substeps") || name.ends_with("max_work");
         if is_count {
             assert_eq!(refused(0.0).as_deref(), Some(name));
         } else {

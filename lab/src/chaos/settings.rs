@@ -19,6 +19,8 @@ pub fn cloth(dice: &mut Dice) -> Cloth {
         substeps: substeps(dice),
         levels: dice.chance(0.2).then(|| levels(dice)),
         max_substeps: dice.one_of([1, 8, 64, 512]),
+        // With fewer substeps than are asked for, cloth may go through what it shouldn't.
+        max_work: None,
         gravity_scale: if dice.wild(0.1) { dice.anything() } else { gravity_scale },
         tether_slack: dice.chance(0.8).then(|| dice.setting(0.0, 0.01)),
         max_velocity: dice.setting(1.0, 100.0),

@@ -73,8 +73,10 @@ impl<'a> Plan<'a> {
         let more = solved_along.filter(|(_, (substeps, _))| *substeps > others.1.0);
         let (risk, (wanted, levels)) = more.unwrap_or(others);
         let (without_risk, _) = policy.of_step(ContactRisk::None, dt);
+        let limit = ctx.substep_limit.max(1);
         let reason = match ctx.settings.method {
             Method::Explicit => SubstepReason::Stability,
+            Method::Strands | Method::Xpbd if limit < wanted => SubstepReason::Budget,
             Method::Strands | Method::Xpbd if !policy.follows_time_step => SubstepReason::Fixed,
             Method::Strands | Method::Xpbd if wanted == without_risk => SubstepReason::Strain,
             Method::Strands | Method::Xpbd => SubstepReason::of_risk(risk, some.unwrap_or_default()),
@@ -82,8 +84,8 @@ impl<'a> Plan<'a> {
         // Levels move what hangs on a body without its weight on the body.
         let levels = if is_on_body || is_implicit { &[] } else { levels };
         let (most, stability, levels) = match ctx.settings.method {
-            Method::Strands => (u32::MAX, Stability::unconditional(wanted), levels),
-            Method::Xpbd => (u32::MAX, Stability::unconditional(wanted), &[][..]),
+            Method::Strands => (limit, Stability::unconditional(wanted), levels),
+            Method::Xpbd => (limit, Stability::unconditional(wanted), &[][..]),
             Method::Explicit => {
                 scratch.lanes.load(particles, topology.order(), scratch.simd_level);
                 grab::take_up(&mut scratch.lanes, ctx.grabs);

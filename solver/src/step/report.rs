@@ -57,6 +57,8 @@ pub enum SubstepReason {
     SharpTip,
     /// Another cloth that it may touch needs so many.
     OtherCloth,
+    /// More were asked for than [`StepContext::substep_limit`](crate::StepContext::substep_limit) allows.
+    Budget,
 }
 
 impl fmt::Display for SubstepReason {
@@ -74,6 +76,7 @@ impl fmt::Display for SubstepReason {
             Self::SharpEdge => "something with edges, or thin, is near",
             Self::SharpTip => "something with a tip, or smaller than a cell, is near",
             Self::OtherCloth => "another cloth that it may touch needs them",
+            Self::Budget => "cut by a budget",
         })
     }
 }

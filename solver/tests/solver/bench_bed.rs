@@ -37,6 +37,7 @@ pub struct Bed {
     pub substep_policy: SubstepPolicy,
     pub max_substeps: u32,
     pub max_velocity: f32,
+    pub substep_limit: u32,
     pub margin: f32,
     pub self_collision: bool,
     pub gravity: Vec3A,
@@ -70,6 +71,7 @@ impl Bed {
             substep_policy: SubstepPolicy::fixed(8, Vec::new()),
             max_substeps: 4096,
             max_velocity: 100.0,
+            substep_limit: u32::MAX,
             margin: 0.0,
             self_collision: false,
             gravity: Vec3A::NEG_Y * GRAVITY,
@@ -162,6 +164,7 @@ impl Bed {
             tethers: self.tethers.as_ref(),
             obstacles: &self.obstacles,
             winds: &self.winds,
+            substep_limit: self.substep_limit,
             pool: self.pool.as_deref(),
             ..StepContext::new(dt, &self.settings, self.material)
         };

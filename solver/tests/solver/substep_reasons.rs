@@ -95,6 +95,19 @@ fn a_mesh_that_changes_its_shape_counts_only_where_it_is_near() {
 }
 
 #[test]
+fn a_limit_is_kept_and_is_the_reason() {
+    for method in [Method::Strands, Method::Xpbd] {
+        let bed = || Bed { self_collision: true, ..hung() }.like_a_game(method);
+        let report = Bed { substep_limit: 3, ..bed() }.step(STEP);
+        let asked = bed().step(STEP).substeps;
+        assert_eq!((report.substeps, report.needed_substeps), (3, asked));
+        assert_eq!(report.reason, SubstepReason::Budget);
+        assert_eq!(Bed { substep_limit: 0, ..bed() }.step(STEP).substeps, 1, "none would be no step");
+        assert_eq!(Bed { substep_limit: asked, ..bed() }.step(STEP), bed().step(STEP));
+    }
+}
+
+#[test]
 fn a_closed_mesh_and_a_step_without_time_have_their_reasons() {
     let mut closed = Bed::new(icosphere(0.2, 4), springs(Springs::default())).like_a_game(Method::Strands);
     // Its triangles ask for as many by themselves.
