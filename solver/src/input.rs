@@ -11,6 +11,7 @@ mod grab;
 mod obstacle;
 mod pin_motion;
 mod settings;
+mod skin;
 mod substep_policy;
 mod tether;
 mod wind;
@@ -22,11 +23,16 @@ pub use crate::input::{
     obstacle::Obstacle,
     pin_motion::PinMotion,
     settings::{Method, StepSettings},
+    skin::{Backstop, Skin, SkinLimit, SkinLimits, SkinPose},
     substep_policy::SubstepPolicy,
     tether::{Tether, Tethers},
     wind::{Gusts, WindRegion, WindSource},
 };
-pub(crate) use crate::input::{substep_policy::ContactRisk, tether::TetherBlock};
+pub(crate) use crate::input::{
+    skin::{FARTHEST, SkinBlock},
+    substep_policy::ContactRisk,
+    tether::TetherBlock,
+};
 
 /// Longest time step that is simulated, s. A longer one is cut down to it: after a stall the cloth falls behind the
 /// clock instead of being thrown about.
@@ -58,6 +64,8 @@ pub struct StepContext<'a> {
     pub grabs: &'a [Grab],
     /// Longest allowed distances to fixed particles. Not for [`Method::Explicit`]. None by default.
     pub tethers: Option<&'a Tethers>,
+    /// What holds the cloth to an animated mesh. None by default.
+    pub skin: Option<Skin<'a>>,
     /// Obstacles, and how they move. None by default.
     pub obstacles: &'a [Obstacle],
     /// All winds that may reach the cloth. None by default.
@@ -84,6 +92,7 @@ impl<'a> StepContext<'a> {
             attached_pins: &[],
             grabs: &[],
             tethers: None,
+            skin: None,
             obstacles: &[],
             winds: &[],
             substep_limit: u32::MAX,

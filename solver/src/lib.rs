@@ -36,9 +36,9 @@ pub use crate::{
     build::{MeshError, SourceMesh, Welded, build, grab_tethers, tethers},
     contact::StepReach,
     input::{
-        AttachedPin, Body, BodyAttachment, BodyDisplacement, BodyImpulse, CollisionFilter, Grab, GrabTether, Gusts,
-        MAX_TIME_STEP, Method, Obstacle, PinMotion, StepContext, StepSettings, SubstepPolicy, Tether, Tethers,
-        WindRegion, WindSource,
+        AttachedPin, Backstop, Body, BodyAttachment, BodyDisplacement, BodyImpulse, CollisionFilter, Grab, GrabTether,
+        Gusts, MAX_TIME_STEP, Method, Obstacle, PinMotion, Skin, SkinLimit, SkinLimits, SkinPose, StepContext,
+        StepSettings, SubstepPolicy, Tether, Tethers, WindRegion, WindSource,
     },
     layout::simd::SimdLevel,
     material::{Elasticity, Material, Moduli, SpringConstants, SpringLaw},

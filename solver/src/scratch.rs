@@ -4,7 +4,11 @@ use bevy_math::Vec3A;
 
 use crate::{
     constraint::{
-        attach::{body::BodyAttachments, tether::PinPlaces},
+        attach::{
+            body::BodyAttachments,
+            skin::{SkinPoints, yielding::YieldingTethers},
+            tether::PinPlaces,
+        },
         implicit::ImplicitBuffers,
         multigrid::Levels,
         strand::bend_factors::BendFactors,
@@ -49,6 +53,10 @@ pub struct Scratch {
     pub(crate) bend_factors: BendFactors,
     /// The pins that hold tethers.
     pub(crate) pins: PinPlaces,
+    /// The animated mesh that holds the cloth.
+    pub(crate) skin: SkinPoints,
+    /// Tethers that give way to it.
+    pub(crate) tethers: YieldingTethers,
     /// Bodies that pins are fixed to.
     pub(crate) body_attachments: BodyAttachments,
     /// What this thread needs of its own.

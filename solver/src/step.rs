@@ -108,7 +108,7 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut FeatureContacts) {
             cloth.solve(span.clone());
         }
         solve_sheets(cloths, touch.between_mut());
-        cloths.iter_mut().for_each(Running::settle);
+        cloths.iter_mut().for_each(|cloth| cloth.settle(span.clone()));
         let comes_after_obstacles = touch.comes_after_obstacles();
         if comes_after_obstacles {
             cloths.iter_mut().for_each(|cloth| cloth.project(span.clone()));

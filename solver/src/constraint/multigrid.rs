@@ -94,11 +94,11 @@ impl LevelSolve<'_> {
 }
 
 impl Levels {
-    /// Makes room, and gives the nodes their masses, once a step.
-    pub fn fit(&mut self, run: &LevelSolve, lanes: &Lanes) {
+    /// Makes room, and gives the nodes their masses by those of slots, once a step.
+    pub fn fit(&mut self, run: &LevelSolve, inverse_mass: impl Fn(usize) -> f32) {
         self.nodes.resize_with(self.nodes.len().max(run.levels.len()), LevelNodes::default);
         for i in run.used() {
-            self.nodes[i].fit(&run.levels[i], lanes, run.simd_level);
+            self.nodes[i].fit(&run.levels[i], &inverse_mass, run.simd_level);
         }
     }
 
@@ -155,7 +155,7 @@ impl Levels {
 }
 
 impl LevelNodes {
-    fn fit(&mut self, level: &Level, lanes: &Lanes, simd_level: SimdLevel) {
+    fn fit(&mut self, level: &Level, inverse_mass: &impl Fn(usize) -> f32, simd_level: SimdLevel) {
         self.order = level.lattice.order();
         let blocks = self.order.block_count();
         self.position.resize(blocks);
@@ -169,12 +169,12 @@ impl LevelNodes {
                 for (mass, &slot) in
                     masses.iter_mut().zip(slots.as_flattened()).filter(|(_, slot)| **slot != Level::NOBODY)
                 {
-                    *mass = lanes.inverse_mass(slot as usize) / level.share;
+                    *mass = inverse_mass(slot as usize) / level.share;
                 }
             }
             TransferOperator::Chart { nodes, .. } => {
                 for (mass, (corners, weights)) in masses.iter_mut().zip(nodes) {
-                    let of_corner = |i: usize| weights[i] * lanes.inverse_mass(corners[i] as usize);
+                    let of_corner = |i: usize| weights[i] * inverse_mass(corners[i] as usize);
                     *mass = (of_corner(0) + of_corner(1) + of_corner(2)) / level.share;
                 }
             }

@@ -13,7 +13,7 @@ use crate::{
         body::Bodies,
         particle::{CandidateRanges, ccd},
     },
-    input::{BodyDisplacement, MAX_TIME_STEP, Obstacle, StepContext, WindSource},
+    input::{BodyDisplacement, MAX_TIME_STEP, Obstacle, Skin, StepContext, WindSource},
     layout::{
         points::Block,
         simd::{SimdLevel, Vec3x8, lane},
@@ -93,7 +93,7 @@ impl BoundingSphere {
 /// The region that a cloth may reach within a step: what is outside of it can't touch the cloth.
 #[derive(Clone, Copy, Debug)]
 pub struct StepReach {
-    /// Corners of the box around the particles, pins and hands, m.
+    /// Corners of the box around the particles, pins, hands and skin, m.
     low: Vec3A,
     high: Vec3A,
     /// How far beyond it something may be touched, m.
@@ -104,7 +104,8 @@ impl StepReach {
     /// The reach of a step. What `ctx` has of obstacles doesn't matter.
     pub fn new(particles: &Particles, ctx: &StepContext) -> Self {
         let ends = ctx.pin_motions.iter().map(|anchor| anchor.end).chain(ctx.grabs.iter().map(|grab| grab.end));
-        let places = particles.position.iter().copied().chain(ends);
+        let on_skin = ctx.skin.into_iter().flat_map(Skin::ways).map(|[_, end]| end);
+        let places = particles.position.iter().copied().chain(ends).chain(on_skin);
         let (low, high) =
             places.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
         let fastest = particles.velocity.iter().map(|v| v.length_squared()).fold(0.0, f32::max).sqrt();

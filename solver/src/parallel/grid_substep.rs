@@ -10,7 +10,10 @@ use bevy_tasks::TaskPool;
 
 use crate::{
     constraint::{
-        attach::tether::{self, PinPlaces},
+        attach::{
+            skin::SkinSolver,
+            tether::{self, PinPlaces},
+        },
         multigrid::{LevelSolve, Levels},
         strand::{
             cells::{self, CellMaterial},
@@ -37,7 +40,7 @@ use crate::{
 pub(crate) const LARGE: usize = 10_000;
 
 /// What the threads need to know of a substep.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct SharedStep<'a> {
     pub grid_solver: GridStrandSolver<'a>,
     pub cells: CellMaterial<'a>,
@@ -47,7 +50,9 @@ pub(crate) struct SharedStep<'a> {
     pub tethers: &'a [TetherBlock],
     pub pins: &'a PinPlaces,
     pub slack: f32,
-    /// What follows once the springs are solved.
+    /// What holds the cloth to an animated mesh once the springs are solved.
+    pub skin: Option<SkinSolver<'a>>,
+    /// What follows then.
     pub finish: Option<Finish<'a>>,
 }
 
@@ -64,7 +69,7 @@ pub(crate) struct WorkerScratch {
     pub across: Points,
 }
 
-/// Moves the cloth along with its levels, solves tethers and springs, and finishes the substep.
+/// Moves the cloth along with its levels, solves tethers, springs and skin, and finishes the substep.
 pub(crate) fn solve(pool: &TaskPool, lanes: &mut Lanes, worker_scratches: &mut Vec<WorkerScratch>, work: &SharedStep) {
     worker_scratches.resize_with(worker_scratches.len().max(phases::size(pool)), WorkerScratch::default);
     let order = lanes.order;
@@ -207,8 +212,12 @@ impl Cloth<'_> {
     }
 
     fn finish(&self, number: usize) {
+        let run = &mut lock(&self.runs[number]);
+        if let Some(skin) = &self.work.skin {
+            skin.solve(run);
+        }
         if let Some(finish) = self.work.finish {
-            integrate::finish(&mut lock(&self.runs[number]), finish, self.work.grid_solver.simd_level);
+            integrate::finish(run, finish, self.work.grid_solver.simd_level);
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::{
     explicit::Stability,
     force::wind,
     imperfection,
-    input::{Method, StepContext},
+    input::{Method, Skin, StepContext},
     integrate::{self, Motion, SpeedLimit},
     layout::simd::SimdLevel,
     parallel::grid_substep,
@@ -78,6 +78,8 @@ impl<'a> Running<'a> {
         scratch.faces.resize_with(ctx.obstacles.len().max(scratch.faces.len()), MeshContacts::default);
         scratch.faces.iter_mut().for_each(MeshContacts::begin);
         scratch.body_attachments.begin(&mut scratch.lanes, topology, ctx);
+        scratch.skin.begin(ctx, topology.order(), scratch.simd_level);
+        scratch.tethers.begin(ctx, topology, &scratch.skin);
         let substep = Substep {
             topology,
             ctx,
@@ -87,7 +89,7 @@ impl<'a> Running<'a> {
             is_near,
             touches: ctx.settings.self_collision || is_near,
             limit: SpeedLimit {
-                around: pin_motion::mean_velocity(ctx.pin_motions, dt),
+                around: velocity_around(scratch.skin.of(ctx), ctx, dt),
                 most: ctx.settings.max_velocity,
             },
             helpers,
@@ -139,7 +141,7 @@ impl<'a> Running<'a> {
         let Scratch { lanes, body_attachments, applied_force, .. } = &mut **scratch;
         body_attachments.advance(lanes, ctx, span.clone(), self.dt, substep.applied(applied_force));
         scratch.bodies.advance(ctx, span.clone(), substep.h);
-        if let Some(tethers) = ctx.tethers {
+        if let Some(tethers) = scratch.tethers.of(ctx) {
             scratch.pins.read(tethers, &scratch.lanes);
         }
         // Hands, and forces that are renewed, come first.
@@ -165,8 +167,8 @@ impl<'a> Running<'a> {
                 }
             }
             (None, Method::Strands) => {
-                grab::solve(&mut scratch.lanes, ctx.grabs, span, substep.h);
-                self.is_finished = substep.solve_strands(scratch, self.has_moved);
+                grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
+                self.is_finished = substep.solve_strands(scratch, span, self.has_moved);
             }
             (None, Method::Xpbd) => {
                 substep.solve_springs(scratch);
@@ -186,11 +188,12 @@ impl<'a> Running<'a> {
         Some(SheetSystem { number, sheet, lanes, force, gathered, buffers: implicit, simd_level: *simd_level })
     }
 
-    /// Lets bodies feel what is attached to them.
-    pub fn settle(&mut self) {
+    /// Lets bodies feel what is attached to them, and holds the cloth to its skin in the part `span` of the step.
+    pub fn settle(&mut self, span: Range<f32>) {
         let Self { scratch, substep, .. } = self;
         let Scratch { lanes, body_attachments, .. } = &mut **scratch;
         body_attachments.settle(lanes, substep.ctx, substep.h);
+        substep.solve_skin(scratch, span);
     }
 
     /// Keeps the cloth out of obstacles in the part `span` of the step.
@@ -212,7 +215,8 @@ impl<'a> Running<'a> {
             self.contacts = self.contacts.max(scratch.implicit.contacts.len() as u32);
         }
         // Without a constraint the integrated velocity is the exact one: rounding stays out of it.
-        let is_constrained = ctx.settings.method != Method::Explicit || substep.touches || !ctx.grabs.is_empty();
+        let is_held = !ctx.grabs.is_empty() || scratch.skin.of(ctx).is_some();
+        let is_constrained = ctx.settings.method != Method::Explicit || substep.touches || is_held;
         if !self.is_finished && is_constrained {
             let Scratch { lanes, applied_force, simd_level, .. } = &mut **scratch;
             integrate::finish(&mut lanes.whole(), substep.finish(applied_force, self.has_moved), *simd_level);
@@ -298,6 +302,12 @@ impl ClothInStep for Running<'_> {
     fn feature_loads_mut(&mut self) -> &mut Vec<FeatureLoad> {
         &mut self.particles.contact_load.features
     }
+}
+
+/// Mean velocity of what holds the cloth over a step of `dt` seconds, m/s: of its pins, or of its skin where it has none.
+fn velocity_around(skin: Option<Skin>, ctx: &StepContext, dt: f32) -> Vec3A {
+    let of_skin = skin.filter(|_| ctx.pin_motions.is_empty()).map(|skin| skin.mean_velocity(dt));
+    of_skin.unwrap_or_else(|| pin_motion::mean_velocity(ctx.pin_motions, dt))
 }
 
 /// What is found when a cloth is taken over.

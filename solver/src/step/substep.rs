@@ -1,11 +1,13 @@
 //! What happens in a substep.
 
+use core::ops::Range;
+
 use bevy_math::Vec3A;
 use bevy_tasks::TaskPool;
 
 use crate::{
     constraint::{
-        attach::{grab, tether},
+        attach::{grab, skin::yielding::YieldingTethers, tether},
         implicit::ImplicitSheet,
         multigrid::LevelSolve,
         strand::{
@@ -22,7 +24,7 @@ use crate::{
     force::wind,
     input::{Method, StepContext, Tethers},
     integrate::{self, Finish, Motion, SpeedLimit},
-    layout::points::Points,
+    layout::{points::Points, simd::SimdLevel},
     parallel::grid_substep::{self, SharedStep, WorkerScratch},
     particles::{Particles, lanes::Run},
     scratch::Scratch,
@@ -85,8 +87,12 @@ impl Substep<'_> {
                 *simd_level,
             );
         }
-        if let Some(run) = self.levels(scratch) {
-            scratch.levels.fit(&run, &scratch.lanes);
+        let Scratch { lanes, levels, skin, tethers, simd_level, .. } = scratch;
+        if let Some(run) = self.levels(tethers, *simd_level) {
+            // Levels leave alone what the skin holds within less than an edge.
+            let tight = skin.of(self.ctx).map(|skin| skin.limits);
+            let is_tight = |slot: usize| tight.is_some_and(|limits| limits.is_tight(limits.max_distance(slot)));
+            levels.fit(&run, |slot| if is_tight(slot) { 0.0 } else { lanes.inverse_mass(slot) });
         }
     }
 
@@ -145,35 +151,35 @@ impl Substep<'_> {
     }
 
     /// Coarse levels, tethers, and then the springs: strands the last, and best held. Of a large cloth threads
-    /// also finish the substep: true where they did.
-    pub fn solve_strands(&self, scratch: &mut Scratch, goes_on: bool) -> bool {
-        let run = self.levels(scratch);
+    /// also solve the skin, and finish the substep: true where they did that.
+    pub fn solve_strands(&self, scratch: &mut Scratch, span: Range<f32>, goes_on: bool) -> bool {
+        let Scratch { lanes, worker_scratch, pins, levels, tethers, simd_level, .. } = scratch;
+        let run = self.levels(tethers, *simd_level);
         if let Some(run) = &run {
-            let Scratch { lanes, worker_scratch, pins, levels, .. } = scratch;
             levels.solve(run, lanes, pins, (&mut worker_scratch.strand_scratch, &mut worker_scratch.across));
         }
         let strand_material = StrandMaterial::new(&self.ctx.material, self.h);
         if let Some((pool, lattice)) = self.helpers {
-            let Scratch { lanes, pins, levels, bend_factors, worker_scratches, applied_force, simd_level, .. } =
-                scratch;
+            let Scratch { skin, bend_factors, worker_scratches, applied_force, .. } = scratch;
             let finish = (!self.is_near && !self.touches).then(|| self.finish(applied_force, goes_on));
             let work = SharedStep {
                 grid_solver: GridStrandSolver { lattice, strand_material, bend_factors, simd_level: *simd_level },
                 cells: CellMaterial::new(&self.ctx.material, self.h, bend_factors),
                 last: self.last,
                 levels: run.as_ref().map(|run| (run, &*levels)),
-                tethers: self.ctx.tethers.map_or(&[], Tethers::of_cloth),
+                tethers: tethers.of(self.ctx).map_or(&[], Tethers::of_cloth),
                 pins,
                 slack: self.slack,
+                skin: skin.solver(self.ctx, span, self.h, *simd_level),
                 finish,
             };
             grid_substep::solve(pool, lanes, worker_scratches, &work);
             return finish.is_some();
         }
         if let Some(run) = &run {
-            for band in scratch.lanes.order.bands() {
-                let Run { position, inverse_mass, .. } = scratch.lanes.band(band);
-                scratch.levels.move_band(run, band, position, inverse_mass, &mut scratch.worker_scratch.across);
+            for band in lanes.order.bands() {
+                let Run { position, inverse_mass, .. } = lanes.band(band);
+                levels.move_band(run, band, position, inverse_mass, &mut worker_scratch.across);
             }
         }
         self.solve_tethers(scratch);
@@ -239,24 +245,34 @@ impl Substep<'_> {
 
     /// Tethers to hands, then those to pins.
     pub fn solve_tethers(&self, scratch: &mut Scratch) {
-        let Scratch { lanes, pins, simd_level, .. } = scratch;
+        let Scratch { lanes, pins, tethers, simd_level, .. } = scratch;
         grab::solve_tethers(lanes, self.ctx.grabs, self.slack);
-        if let Some(tethers) = self.ctx.tethers {
+        if let Some(tethers) = tethers.of(self.ctx) {
             let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
             tether::solve(position, inverse_mass, 0, tethers.of_cloth(), pins, self.slack, *simd_level);
         }
     }
 
+    /// What holds the cloth to an animated mesh in the part `span` of the step, unless threads have done it.
+    pub fn solve_skin(&self, scratch: &mut Scratch, span: Range<f32>) {
+        let Scratch { lanes, skin, simd_level, .. } = scratch;
+        if self.helpers.is_none()
+            && let Some(solver) = skin.solver(self.ctx, span, self.h, *simd_level)
+        {
+            solver.solve(&mut lanes.whole());
+        }
+    }
+
     /// The coarse levels, if there are tethers: both hold the cloth within its length.
-    fn levels(&self, scratch: &Scratch) -> Option<LevelSolve<'_>> {
+    fn levels<'a>(&'a self, tethers: &'a YieldingTethers, simd_level: SimdLevel) -> Option<LevelSolve<'a>> {
         Some(LevelSolve {
             levels: &self.topology.levels,
             passes: self.levels,
-            tethers: self.ctx.tethers.filter(|tethers| !tethers.is_empty())?,
+            tethers: tethers.of(self.ctx).filter(|tethers| !tethers.is_empty())?,
             slack: self.slack,
             stretch: Scaled::new(self.ctx.material.strand_stiffness(), self.h),
             last: self.last,
-            simd_level: scratch.simd_level,
+            simd_level,
         })
     }
 }
