@@ -4,11 +4,7 @@ use bevy_math::Vec3A;
 
 use crate::{
     constraint::{
-        attach::{
-            body::BodyAttachments,
-            skin::{SkinPoints, yielding::YieldingTethers},
-            tether::PinPlaces,
-        },
+        attach::{body::BodyAttachments, skin::SkinPoints, tether::PinPlaces},
         implicit::ImplicitBuffers,
         multigrid::Levels,
         strand::bend_factors::BendFactors,
@@ -55,8 +51,6 @@ pub struct Scratch {
     pub(crate) pins: PinPlaces,
     /// The animated mesh that holds the cloth.
     pub(crate) skin: SkinPoints,
-    /// Tethers that give way to it.
-    pub(crate) tethers: YieldingTethers,
     /// Bodies that pins are fixed to.
     pub(crate) body_attachments: BodyAttachments,
     /// What this thread needs of its own.

@@ -81,53 +81,28 @@ impl Tethers {
     /// Drops the tethers to all pins but some.
     pub fn keep(&mut self, is_kept: impl Fn(u32) -> bool) {
         let Self { pins, blocks, levels, .. } = self;
-        for block in levels.iter_mut().chain([blocks]).flatten() {
-            for (length, &pin) in block.lengths.iter_mut().zip(&block.pins) {
-                *length = if is_kept(pins[pin as usize]) { *length } else { f32::INFINITY };
+        for blocks in levels.iter_mut().chain([blocks]) {
+            for block in blocks.iter_mut() {
+                for (length, &pin) in block.lengths.iter_mut().zip(&block.pins) {
+                    *length = if is_kept(pins[pin as usize]) { *length } else { f32::INFINITY };
+                }
             }
+            blocks.retain(|block| block.lengths.iter().any(|&length| length < f32::INFINITY));
         }
-        self.drop_idle();
     }
 
     /// Gives the lengths of `built`, of which these are a copy, times the ratio at a slot of the cloth, or of one of its
     /// levels, for the particle that holds it.
     pub(crate) fn stretch(&mut self, built: &Self, ratio: impl Fn(Option<usize>, usize, u32) -> f32) {
-        self.set_lengths(built, |level, slot, pin, length| length * ratio(level, slot, pin));
-    }
-
-    /// Becomes a copy of `built` with other lengths: what `length` makes of that of each, at a slot of the cloth or of one of its
-    /// levels, to the particle that holds it. Infinite ones hold nobody, and are left out.
-    pub(crate) fn copy_with_lengths(&mut self, built: &Self, length: impl Fn(Option<usize>, usize, u32, f32) -> f32) {
-        let Self { order, pins, blocks, levels, longest } = self;
-        (*order, *longest) = (built.order, built.longest);
-        pins.clone_from(&built.pins);
-        blocks.clone_from(&built.blocks);
-        // None is dropped: memory that serves many cloths keeps the lists of those that have more.
-        levels.resize_with(levels.len().max(built.levels.len()), Vec::new);
-        levels.iter_mut().for_each(Vec::clear);
-        levels.iter_mut().zip(&built.levels).for_each(|(blocks, built)| blocks.extend_from_slice(built));
-        self.set_lengths(built, length);
-        self.drop_idle();
-    }
-
-    fn set_lengths(&mut self, built: &Self, length: impl Fn(Option<usize>, usize, u32, f32) -> f32) {
         let Self { pins, blocks, levels, .. } = self;
         let of_levels = (0..).map(Some).zip(levels.iter_mut().zip(&built.levels));
         for (level, (blocks, built)) in core::iter::once((None, (blocks, &built.blocks))).chain(of_levels) {
             for (block, built) in blocks.iter_mut().zip(built) {
                 for lane in 0..LANES {
                     let slot = block.block as usize * LANES + lane;
-                    let pin = pins[block.pins[lane] as usize];
-                    block.lengths[lane] = length(level, slot, pin, built.lengths[lane]);
+                    block.lengths[lane] = built.lengths[lane] * ratio(level, slot, pins[block.pins[lane] as usize]);
                 }
             }
-        }
-    }
-
-    /// Drops blocks in which nobody is held.
-    fn drop_idle(&mut self) {
-        for blocks in self.levels.iter_mut().chain([&mut self.blocks]) {
-            blocks.retain(|block| block.lengths.iter().any(|&length| length < f32::INFINITY));
         }
     }
 

@@ -79,7 +79,6 @@ impl<'a> Running<'a> {
         scratch.faces.iter_mut().for_each(MeshContacts::begin);
         scratch.body_attachments.begin(&mut scratch.lanes, topology, ctx);
         scratch.skin.begin(ctx, topology.order(), scratch.simd_level);
-        scratch.tethers.begin(ctx, topology, &scratch.skin);
         let substep = Substep {
             topology,
             ctx,
@@ -141,7 +140,7 @@ impl<'a> Running<'a> {
         let Scratch { lanes, body_attachments, applied_force, .. } = &mut **scratch;
         body_attachments.advance(lanes, ctx, span.clone(), self.dt, substep.applied(applied_force));
         scratch.bodies.advance(ctx, span.clone(), substep.h);
-        if let Some(tethers) = scratch.tethers.of(ctx) {
+        if let Some(tethers) = ctx.tethers {
             scratch.pins.read(tethers, &scratch.lanes);
         }
         // Hands, and forces that are renewed, come first.
@@ -160,10 +159,14 @@ impl<'a> Running<'a> {
         match (substep.implicit, ctx.settings.method) {
             (Some(_), _) => {
                 grab::solve(&mut scratch.lanes, ctx.grabs, span.clone(), substep.h);
-                let Scratch { lanes, broad_phase, faces, bodies, implicit, simd_level, .. } = &mut **scratch;
+                let Scratch { lanes, broad_phase, faces, bodies, implicit, skin, simd_level, .. } = &mut **scratch;
                 let predicted = &mut implicit.contacts.predicted;
                 if substep.is_near {
-                    contact::predict(lanes, (broad_phase, faces, bodies), ctx, span, substep.h, predicted, *simd_level);
+                    let around = (broad_phase, &mut faces[..], bodies);
+                    contact::predict(lanes, around, ctx, span.clone(), substep.h, predicted, *simd_level);
+                }
+                if let Some(skin) = skin.solver(ctx, span, substep.h, *simd_level) {
+                    skin.predict(lanes, ctx.gravity * (substep.h * substep.h), predicted);
                 }
             }
             (None, Method::Strands) => {

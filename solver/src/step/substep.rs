@@ -7,7 +7,7 @@ use bevy_tasks::TaskPool;
 
 use crate::{
     constraint::{
-        attach::{grab, skin::yielding::YieldingTethers, tether},
+        attach::{grab, tether},
         implicit::ImplicitSheet,
         multigrid::LevelSolve,
         strand::{
@@ -87,8 +87,8 @@ impl Substep<'_> {
                 *simd_level,
             );
         }
-        let Scratch { lanes, levels, skin, tethers, simd_level, .. } = scratch;
-        if let Some(run) = self.levels(tethers, *simd_level) {
+        let Scratch { lanes, levels, skin, simd_level, .. } = scratch;
+        if let Some(run) = self.levels(*simd_level) {
             // Levels leave alone what the skin holds within less than an edge.
             let tight = skin.of(self.ctx).map(|skin| skin.limits);
             let is_tight = |slot: usize| tight.is_some_and(|limits| limits.is_tight(limits.max_distance(slot)));
@@ -153,8 +153,8 @@ impl Substep<'_> {
     /// Coarse levels, tethers, and then the springs: strands the last, and best held. Of a large cloth threads
     /// also solve the skin, and finish the substep: true where they did that.
     pub fn solve_strands(&self, scratch: &mut Scratch, span: Range<f32>, goes_on: bool) -> bool {
-        let Scratch { lanes, worker_scratch, pins, levels, tethers, simd_level, .. } = scratch;
-        let run = self.levels(tethers, *simd_level);
+        let Scratch { lanes, worker_scratch, pins, levels, simd_level, .. } = scratch;
+        let run = self.levels(*simd_level);
         if let Some(run) = &run {
             levels.solve(run, lanes, pins, (&mut worker_scratch.strand_scratch, &mut worker_scratch.across));
         }
@@ -167,7 +167,7 @@ impl Substep<'_> {
                 cells: CellMaterial::new(&self.ctx.material, self.h, bend_factors),
                 last: self.last,
                 levels: run.as_ref().map(|run| (run, &*levels)),
-                tethers: tethers.of(self.ctx).map_or(&[], Tethers::of_cloth),
+                tethers: self.ctx.tethers.map_or(&[], Tethers::of_cloth),
                 pins,
                 slack: self.slack,
                 skin: skin.solver(self.ctx, span, self.h, *simd_level),
@@ -245,9 +245,9 @@ impl Substep<'_> {
 
     /// Tethers to hands, then those to pins.
     pub fn solve_tethers(&self, scratch: &mut Scratch) {
-        let Scratch { lanes, pins, tethers, simd_level, .. } = scratch;
+        let Scratch { lanes, pins, simd_level, .. } = scratch;
         grab::solve_tethers(lanes, self.ctx.grabs, self.slack);
-        if let Some(tethers) = tethers.of(self.ctx) {
+        if let Some(tethers) = self.ctx.tethers {
             let (position, inverse_mass) = (&mut lanes.position.0, &lanes.inverse_mass);
             tether::solve(position, inverse_mass, 0, tethers.of_cloth(), pins, self.slack, *simd_level);
         }
@@ -264,11 +264,11 @@ impl Substep<'_> {
     }
 
     /// The coarse levels, if there are tethers: both hold the cloth within its length.
-    fn levels<'a>(&'a self, tethers: &'a YieldingTethers, simd_level: SimdLevel) -> Option<LevelSolve<'a>> {
+    fn levels(&self, simd_level: SimdLevel) -> Option<LevelSolve<'_>> {
         Some(LevelSolve {
             levels: &self.topology.levels,
             passes: self.levels,
-            tethers: tethers.of(self.ctx).filter(|tethers| !tethers.is_empty())?,
+            tethers: self.ctx.tethers.filter(|tethers| !tethers.is_empty())?,
             slack: self.slack,
             stretch: Scaled::new(self.ctx.material.strand_stiffness(), self.h),
             last: self.last,

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use bevy_math::Vec3A;
 use bevy_tasks::TaskPool;
 use drape_solver::{
-    AttachedPin, BodyAttachment, Grab, Material, Member, Method, Obstacle, Particles, PinMotion, Scratch, SourceMesh,
-    StepContext, StepReach, StepReport, StepSettings, SubstepPolicy, Tethers, Topology, WindSource, build, step,
+    AttachedPin, BodyAttachment, Grab, Material, Member, Method, Obstacle, Particles, PinMotion, Scratch, Skin,
+    SkinLimits, SkinPose, SourceMesh, StepContext, StepReach, StepReport, StepSettings, SubstepPolicy, Tethers,
+    Topology, WindSource, build, step,
 };
 
 use crate::fixtures::mesh::{Grid, topology};
@@ -18,6 +19,17 @@ pub const ALL: [Method; 3] = [Method::Strands, Method::Xpbd, Method::Explicit];
 
 /// Those that are stable whatever the stiffness and the time step: the default and the one before it.
 pub const STABLE: [Method; 2] = [Method::Strands, Method::Xpbd];
+
+/// An animated mesh that holds a cloth.
+#[derive(Clone)]
+pub struct AnimatedMesh {
+    pub limits: SkinLimits,
+    /// At the start and the end of the coming step.
+    pub poses: [SkinPose; 2],
+    /// Hz
+    pub pull: f32,
+    pub pull_damping: f32,
+}
 
 /// A cloth and all that acts on it.
 #[derive(Clone)]
@@ -31,6 +43,7 @@ pub struct Bed {
     pub grabs: Vec<Grab>,
     pub tethers: Option<Tethers>,
     pub tether_slack: f32,
+    pub skin: Option<AnimatedMesh>,
     pub obstacles: Vec<Obstacle>,
     pub winds: Vec<WindSource>,
     pub method: Method,
@@ -65,6 +78,7 @@ impl Bed {
             grabs: Vec::new(),
             tethers: None,
             tether_slack: 0.0,
+            skin: None,
             obstacles: Vec::new(),
             winds: Vec::new(),
             method: Method::Strands,
@@ -162,6 +176,13 @@ impl Bed {
             attached_pins: &self.attached_pins,
             grabs: &self.grabs,
             tethers: self.tethers.as_ref(),
+            skin: self.skin.as_ref().map(|AnimatedMesh { limits, poses: [start, end], pull, pull_damping }| Skin {
+                limits,
+                start,
+                end,
+                pull: *pull,
+                pull_damping: *pull_damping,
+            }),
             obstacles: &self.obstacles,
             winds: &self.winds,
             substep_limit: self.substep_limit,

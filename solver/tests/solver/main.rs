@@ -25,6 +25,7 @@ mod robustness;
 mod self_collision;
 mod sheets;
 mod simd_level;
+mod skin;
 mod speed_limit;
 mod springs;
 mod stages;

@@ -11,6 +11,16 @@
 //! stiffness: its mass cancels out. Distance and backstop are the motion and separation constraints of NvCloth, the max distance
 //! and backstop of Unreal Engine. What came into the backstop within the substep leaves at once; what was inside before leaves no
 //! faster than it would an obstacle, and gains no speed by it.
+//!
+//! **Tethers and levels.** Skinning stretches meshes by a quarter at the joints of common models: more than cloth gives. The skin
+//! comes after what holds the cloth by its length, and wins. Coarse levels leave particles alone that it holds within less than
+//! an edge: otherwise they draw what hangs from a stretched mesh together, and springs there are strained by 19 % instead of
+//! 0.05 %. Tethers stay as they are: they draw all particles to the same side of their limits, so that cloth is strained as
+//! evenly as the mesh. Lengthened to what the mesh asks for they leave that to the springs, a few of which are then stretched by
+//! up to seven times their length.
+//!
+//! Strands aren't helped by another clamp before them: in cloth that a fast mesh holds within half an edge, strain is the same to
+//! some hundredths of itself, more as often as less.
 
 use core::{f32::consts::TAU, ops::Range};
 
@@ -29,7 +39,7 @@ use crate::{
 };
 
 mod backstop;
-pub(crate) mod yielding;
+mod predict;
 
 /// The animated mesh in a step, laid out as the particles are.
 #[derive(Clone, Debug, Default)]
@@ -55,12 +65,11 @@ impl SkinPoints {
                 self.normals[i].load(order, &pose.normal, simd_level);
             }
         }
-        // Fixed particles are where their pins are, whatever the mesh says.
-        for pin in ctx.pin_motions {
-            let slot = order.slot(pin.particle);
-            self.places[0].set(slot, pin.start);
-            self.places[1].set(slot, pin.end);
-        }
+    }
+
+    /// The mesh's normal at a slot in a part (0..=1) of the step, of any length. Only where there are backstops.
+    fn normal(&self, slot: usize, part: f32) -> Vec3A {
+        self.normals[0].get(slot).lerp(self.normals[1].get(slot), part)
     }
 
     /// The skin of a step, if there is one that holds anything.
@@ -69,7 +78,7 @@ impl SkinPoints {
     }
 
     /// Where the mesh has the particle in a slot at the start and the end of the step, m.
-    pub fn way(&self, slot: usize) -> [Vec3A; 2] {
+    fn way(&self, slot: usize) -> [Vec3A; 2] {
         [self.places[0].get(slot), self.places[1].get(slot)]
     }
 

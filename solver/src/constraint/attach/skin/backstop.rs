@@ -24,7 +24,7 @@ use crate::{
     },
 };
 
-/// Below this length a normal between two others has no direction: the mesh is turned over within a step.
+/// Below this share of their lengths a normal between two others has no direction: the mesh is turned over within a step.
 const LEAST_NORMAL: f32 = 1e-3;
 
 /// Backstops of eight particles in a substep.
@@ -54,7 +54,8 @@ impl<S: Simd> Backstop8<S> {
         let (from, to) = (Vec3x8::load(simd, from), Vec3x8::load(simd, to));
         let radius = lane(simd, &limit.backstop_radius);
         let (before, now) = (between(simd, from, to, span[0]), between(simd, from, to, span[1]));
-        let ((before, has_before), (normal, has_normal)) = (unit(simd, before), unit(simd, now));
+        let least = from.dot(from).max(to.dot(to)) * (LEAST_NORMAL * LEAST_NORMAL);
+        let ((before, has_before), (normal, has_normal)) = (unit(simd, before, least), unit(simd, now, least));
         Self {
             distance: lane(simd, &limit.backstop_distance),
             radius,
@@ -123,10 +124,10 @@ impl<S: Simd> Backstop8<S> {
     }
 }
 
-/// Unit vectors, and which of them have a direction.
+/// Unit vectors, and which of them have a direction: those whose squared length is more than the `least`.
 #[inline(always)]
-fn unit<S: Simd>(simd: S, vector: Vec3x8<S>) -> (Vec3x8<S>, mask32x8<S>) {
+fn unit<S: Simd>(simd: S, vector: Vec3x8<S>, least: f32x8<S>) -> (Vec3x8<S>, mask32x8<S>) {
     let squared = vector.dot(vector);
-    let is_one = squared.simd_gt(LEAST_NORMAL * LEAST_NORMAL) & squared.simd_lt(f32::INFINITY);
-    (vector * (f32x8::splat(simd, 1.0) / squared.sqrt()), is_one)
+    let has_direction = squared.simd_gt(least) & squared.simd_lt(f32::INFINITY);
+    (vector * (f32x8::splat(simd, 1.0) / squared.sqrt()), has_direction)
 }
