@@ -19,8 +19,8 @@
 //! evenly as the mesh. Lengthened to what the mesh asks for they leave that to the springs, a few of which are then stretched by
 //! up to seven times their length.
 //!
-//! Strands aren't helped by another clamp before them: in cloth that a fast mesh holds within half an edge, strain is the same to
-//! some hundredths of itself, more as often as less.
+//! Strands aren't helped by another clamp before them: in cloth that a fast mesh holds within half an edge, strain is then the same
+//! to some hundredths of itself, in some scenes more and in others less.
 
 use core::{f32::consts::TAU, ops::Range};
 
