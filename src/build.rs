@@ -11,6 +11,7 @@ use crate::{
 mod assemble;
 mod candidate;
 pub(crate) mod plan;
+mod skin;
 pub(crate) mod system;
 
 pub use crate::solver::{grab_tethers, tethers};

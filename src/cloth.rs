@@ -9,8 +9,8 @@ use crate::{
     pins::Pins,
     solver::{LevelPass, Method, Moduli, SubstepPolicy, Topology},
     state::{
-        ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, Sleep, StepInput,
-        Warned,
+        ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, Skinning, Sleep,
+        StepInput, Warned,
     },
 };
 
@@ -62,7 +62,7 @@ impl From<ClothSolver> for Method {
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[require(Fabric, Pins, Transform)]
 #[require(ClothState, ClothAttachments, ClothGrabs, ClothReport, ClothStatus)]
-#[require(InForce, PendingBuild, Requests, Sleep, StepInput, Warned)]
+#[require(InForce, PendingBuild, Requests, Skinning, Sleep, StepInput, Warned)]
 pub struct Cloth {
     /// Time integrator and constraint solver, [`ClothSolver::Strands`] by default.
     pub solver: ClothSolver,

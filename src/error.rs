@@ -36,6 +36,17 @@ pub enum ClothError {
     /// The entity's scale, or one of its parents', makes the mesh flat or is not finite.
     #[error("the entity's transform can't be inverted; make every scale of it and its parents finite and not zero")]
     FlatTransform,
+    /// The skeleton doesn't fit the mesh.
+    #[error(
+        "its skin follows {needed} joints, of which its SkinnedMesh has {found} with a Transform that can be inverted; give it the \
+         skeleton that the mesh was made for, or remove SkinnedMesh"
+    )]
+    Skeleton {
+        /// Number of joints that the skin follows.
+        needed: usize,
+        /// How many there are.
+        found: usize,
+    },
     /// A pin names a vertex that the mesh doesn't have.
     #[error("a pin names vertex {vertex}, but the mesh has {count} vertices; pin vertices below that")]
     PinOutOfRange {

@@ -3,10 +3,12 @@
 mod clock;
 mod parallel;
 mod pose;
+mod skeleton;
 mod teleport;
 
 pub(crate) use clock::{ClothClock, ClothRun, FromLatestStep, StepNumber, count_steps};
 pub(crate) use parallel::{for_each, pool};
 pub(crate) use pose::{Poses, SCALE_ROUNDING, is_invertible};
+pub(crate) use skeleton::{Skeletons, joint_matrices};
 pub use teleport::ColliderTeleportThreshold;
 pub(crate) use teleport::{Jump, JumpDetection, PastPose, Teleported, forget_teleports};

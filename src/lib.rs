@@ -321,6 +321,7 @@ mod error;
 mod fabric;
 mod parameter;
 mod pins;
+mod skin;
 mod state;
 
 pub mod build;
@@ -373,6 +374,7 @@ pub mod prelude {
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
         simulate::budget::ClothBudget,
+        skin::{ATTRIBUTE_CLOTH, ClothMap, ClothSkin, ClothTeleport, TeleportMode},
         solver::{Ellipsoid, LevelPass, MeshError, Solid, TaperedCapsule},
         state::{
             ClothAttachments, ClothFailed, ClothFellAsleep, ClothGrabbed, ClothGrabs, ClothGrip, ClothPoint,

@@ -2,9 +2,11 @@
 
 mod grid;
 mod job;
+mod skin;
 mod source;
 
 pub use grid::ClothGrid;
 pub(crate) use job::Jobs;
+pub(crate) use skin::{Skin, is_skinned};
 pub use source::ATTRIBUTE_WARP;
 pub(crate) use source::{read, read_uvs};

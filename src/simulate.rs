@@ -183,6 +183,7 @@ impl<'a> Parts<'a> {
             attached_pins,
             grabs,
             tethers: settings.tether_slack.map(|_| cloth.attachments.as_tethers()),
+            skin: cloth.skinning.0.as_ref().and_then(|bound| bound.as_constraint()),
             winds: felt,
             substep_limit: allowance.substeps.min(settings.substep_limit(particles.len())),
             pool,

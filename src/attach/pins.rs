@@ -7,29 +7,52 @@ use bevy::{
 
 use crate::{
     draw::ClothMesh,
-    frame::{Jump, Poses},
+    frame::{Jump, Poses, Skeletons},
     pins::{PinTarget, Pins, targets_by_particle},
+    skin::{ClothSkin, ClothTeleport, TeleportMode, teleport::put_at_rest},
     solver::{PinMotion, build::blend::BlendWeightBuild},
-    state::{self, ClothAttachments, ClothGrabs, ClothState, ClothStatus, HeldPin, PinAnchor, Requests, StepInput},
+    state::{
+        self, ClothAttachments, ClothGrabs, ClothState, ClothStatus, HeldPin, PinAnchor, Requests, Skinning, StepInput,
+        Warned,
+    },
 };
 
 /// Reads changed [`Pins`] and has the tethers worked out anew.
 pub(crate) fn update_pins(
     mut cloths: Query<
-        (Entity, &Pins, &ClothMesh, &ClothStatus, &mut ClothState, &mut ClothAttachments, &mut StepInput),
-        Changed<Pins>,
+        (
+            Entity,
+            (&Pins, Option<&ClothSkin>),
+            (&ClothMesh, &ClothStatus),
+            &mut ClothState,
+            &mut ClothAttachments,
+            &mut StepInput,
+            &mut Skinning,
+        ),
+        Or<(Changed<Pins>, Changed<ClothSkin>)>,
     >,
     meshes: Res<Assets<Mesh>>,
     poses: Poses,
 ) {
-    for (entity, pins, mesh, status, mut state, mut attachments, mut input) in &mut cloths {
+    for (entity, (pins, skin), (mesh, status), mut state, mut attachments, mut input, mut skinning) in &mut cloths {
         let Some(source) = meshes.get(&mesh.source) else { continue };
         if !status.is_running() {
             continue;
         }
-        let (targets, refused) = targets_by_particle(pins, source, &state.particle_of_vertex, &state.topology);
+        let (mut targets, refused) = targets_by_particle(pins, source, &state.particle_of_vertex, &state.topology);
+        if let Some(bound) = &mut skinning.0 {
+            let skin = skin.cloned().unwrap_or_default();
+            if let Err(error) = skin.validate() {
+                warn!("cloth {entity} keeps the skin that it had: {error}");
+                continue;
+            }
+            let limits = skin.limits(source, &state.particle_of_vertex, state.particles.len());
+            limits.fix(&mut targets);
+            bound.limit(&limits.limits, [skin.pull, skin.pull_damping], &state.topology);
+            state.is_disturbed = true;
+        }
         match refused.first() {
-            None => hold(&mut state, &mut attachments, &mut input, &targets, entity, &poses),
+            None => hold(&mut state, &mut attachments, &mut input, &targets, (entity, &skinning), &poses),
             Some((_, error)) => warn!("cloth {entity} keeps the pins that it had: {error}"),
         }
     }
@@ -43,9 +66,10 @@ pub(crate) fn hold(
     attachments: &mut ClothAttachments,
     input: &mut StepInput,
     targets: &[PinTarget],
-    cloth: Entity,
+    (cloth, skinning): (Entity, &Skinning),
     poses: &Poses,
 ) {
+    let carrier = skinning.carrier(cloth);
     let mut anchors: Vec<PinAnchor> = Vec::new();
     let pins: Vec<HeldPin> = (0..)
         .zip(targets)
@@ -57,7 +81,7 @@ pub(crate) fn hold(
             let offset = kept.map_or_else(world_place, |pin| pin.offset);
             let anchor = anchors.iter().position(|anchor| anchor.target == target).unwrap_or_else(|| {
                 let known = attachments.anchors.iter().find(|anchor| anchor.target == target);
-                anchors.push(known.copied().unwrap_or_else(|| PinAnchor::new(target, cloth, poses)));
+                anchors.push(known.copied().unwrap_or_else(|| PinAnchor::new(target, carrier, poses)));
                 anchors.len() - 1
             });
             HeldPin { particle, target, anchor: anchor as u32, offset }
@@ -78,7 +102,7 @@ pub(crate) fn hold(
     attachments.begin_tethers();
     state.set_masses(&attachments.pins);
     // Takes the places of new pins in their targets' space now, before either moves on.
-    plan_motions(state, attachments, input);
+    plan_motions(state, attachments, input, skinning);
 }
 
 /// Distances along the cloth that are worked out in one step: some milliseconds. 64 x 64 particles on two pins are done
@@ -122,22 +146,45 @@ pub(crate) fn follow_targets(
         &mut ClothGrabs,
         &mut Requests,
         &mut StepInput,
+        (&mut Skinning, Option<&ClothTeleport>, &mut Warned),
     )>,
-    poses: Poses,
+    skeletons: Skeletons,
+    time: Res<Time>,
 ) {
-    for (entity, status, mut state, mut attachments, mut grabs, mut requests, mut input) in &mut cloths {
+    let poses = &skeletons.poses;
+    for (
+        entity,
+        status,
+        mut state,
+        mut attachments,
+        mut grabs,
+        mut requests,
+        mut input,
+        (mut skinning, teleport, mut warned),
+    ) in &mut cloths
+    {
         if !status.is_running() {
             continue;
         }
         let (state, attachments, grabs) = (&mut *state, &mut *attachments, grabs.bypass_change_detection());
+        let carrier = skinning.carrier(entity);
         for anchor in &mut attachments.anchors {
-            anchor.follow(entity, &poses);
+            anchor.follow(carrier, poses);
         }
         let mut jump = None;
-        if let Ok(pose) = poses.compute_global_transform(entity) {
-            let pose = pose.affine();
+        let pose = match &mut skinning.0 {
+            Some(bound) => {
+                bound.read_joints(&skeletons);
+                bound.pose()
+            }
+            None => skeletons.pose(entity),
+        };
+        if let Some(pose) = pose {
             state.is_disturbed |= state.pose != pose;
             jump = take_asked_jump((state, attachments, grabs), &mut requests, pose);
+            if jump.is_none() && skinning.0.is_some() {
+                jump = skeleton_jump((state, attachments, grabs), teleport, pose, time.delta_secs());
+            }
             state.pose = pose;
             state.follow_scale(attachments);
         }
@@ -152,7 +199,22 @@ pub(crate) fn follow_targets(
         }
         input.jump = jump;
         state::stay_near(state, attachments, grabs);
-        plan_motions(state, attachments, &mut input);
+        if let Some(bound) = &mut skinning.0 {
+            bound.advance(&state.topology, state.origin, input.jump.is_some());
+            if input.jump.is_some() && teleport.is_some_and(|teleport| teleport.mode == TeleportMode::Reset) {
+                let ClothState { particles, .. } = state;
+                put_at_rest(bound.places(), &mut particles.position, &mut particles.velocity);
+            }
+            state.is_disturbed |= bound.moves();
+            let is_lost = !bound.is_whole();
+            if is_lost && !core::mem::replace(&mut warned.lost_joint, is_lost) {
+                warn!(
+                    "cloth {entity} has lost a joint of its skeleton and stays where it was: give it a SkinnedMesh whose joints \
+                     are there"
+                );
+            }
+        }
+        plan_motions(state, attachments, &mut input, &skinning);
     }
 }
 
@@ -171,8 +233,26 @@ fn take_asked_jump(
     Jump::between(reset_from?, pose)
 }
 
+/// Has a cloth jump along with a skeleton that has been put elsewhere within a step of `dt` seconds, if it has.
+fn skeleton_jump(
+    (state, attachments, grabs): (&mut ClothState, &mut ClothAttachments, &mut ClothGrabs),
+    teleport: Option<&ClothTeleport>,
+    pose: Affine3A,
+    dt: f32,
+) -> Option<Jump> {
+    let teleport = teleport.copied().filter(|teleport| teleport.validate().is_ok()).unwrap_or_default();
+    let jump = teleport.is_exceeded(&state.pose, &pose, dt).then(|| Jump::between(state.pose, pose)).flatten()?;
+    state::carry(state, attachments, grabs, &jump);
+    Some(jump)
+}
+
 /// Plans the motion of each pin from where its particle is to where its anchor has it.
-fn plan_motions(state: &mut ClothState, attachments: &mut ClothAttachments, input: &mut StepInput) {
+fn plan_motions(
+    state: &mut ClothState,
+    attachments: &mut ClothAttachments,
+    input: &mut StepInput,
+    skinning: &Skinning,
+) {
     let origin = Vec3A::from(state.origin);
     input.pin_motions.clear();
     // Bridges to physics engines fill these.
@@ -182,7 +262,9 @@ fn plan_motions(state: &mut ClothState, attachments: &mut ClothAttachments, inpu
     for pin in &mut attachments.pins {
         let anchor = &attachments.anchors[pin.anchor as usize];
         let place = &mut state.particles.position[pin.particle as usize];
+        let on_skin = skinning.0.as_ref().and_then(|bound| bound.holds(pin));
         let end = match (pin.target, anchor.pose()) {
+            _ if on_skin.is_some() => on_skin.unwrap_or(*place),
             (PinTarget::World, _) => pin.offset.unwrap_or(*place),
             (_, Some(pose)) => {
                 let from_pose = pose.translation - origin;

@@ -11,18 +11,20 @@ use bevy::{
 use super::{
     candidate::{CandidateItem, Cause},
     plan::{Plan, PlanCache, is_large},
+    skin::{at_scale_of, wear},
 };
 use crate::{
     attach,
     cloth::{InForce, margin, resolution},
-    draw::{Binding, ClothMesh, Drawn, Lost, copy_without_skin},
+    draw::{Binding, ClothMesh, Drawn, Lost, copy_with_skin, copy_without_skin},
     error::ClothError,
-    frame::{Jump, Poses, is_invertible},
+    frame::{Jump, Skeletons, is_invertible},
+    mesh_input::is_skinned,
     pins::{PinTarget, targets_by_particle},
     solver::{Material, Particles, Tethers},
     state::{
         self, BuildKey, ClothAttachments, ClothGrabs, ClothReady, ClothReport, ClothReset, ClothState, ClothStatus,
-        Requests, RestScale, StepInput, TetherKey, width_at_rest,
+        Requests, RestScale, Skinning, StepInput, TetherKey, width_at_rest,
     },
 };
 
@@ -31,6 +33,7 @@ pub(super) struct Built {
     state: ClothState,
     attachments: ClothAttachments,
     input: StepInput,
+    skinning: Skinning,
     binding: Arc<Binding>,
     mesh: Mesh,
     positions: Vec<[f32; 3]>,
@@ -43,14 +46,19 @@ impl CandidateItem<'_, '_> {
         id: AssetId<Mesh>,
         mesh: &Mesh,
         cache: &mut PlanCache,
-        poses: &Poses,
+        skeletons: &Skeletons,
     ) -> Result<Option<Built>, ClothError> {
-        let pose = poses
-            .compute_global_transform(self.entity)
-            .map(|global| global.affine())
-            .ok()
-            .filter(is_invertible)
-            .ok_or(ClothError::FlatTransform)?;
+        let skeleton = self.skeleton.as_deref().filter(|_| is_skinned(mesh)).cloned();
+        let bindposes = match skeleton.as_ref().map(|skeleton| skeletons.bindposes(skeleton)) {
+            Some(None) => return Ok(None),
+            bindposes => bindposes.flatten(),
+        };
+        let worn = skeleton.as_ref().zip(bindposes);
+        let pose = match worn {
+            // The mesh as it was modelled: of its skeleton's transform only the scale counts.
+            Some((skeleton, bindposes)) => at_scale_of(skeleton, bindposes, skeletons)?,
+            None => skeletons.pose(self.entity).filter(is_invertible).ok_or(ClothError::FlatTransform)?,
+        };
         let pending = self.pending(pose.matrix3);
         // Settings count as they are when all is done.
         if cache.is_working_on(id, &pending) {
@@ -64,7 +72,14 @@ impl CandidateItem<'_, '_> {
         }
         let Some(plan) = cache.plan(id, mesh, pending.to_world) else { return Ok(None) };
         let plan = plan?;
-        let targets = self.targets(mesh, &plan)?;
+        let mut targets = self.targets(mesh, &plan)?;
+        let skinning = match worn {
+            Some((skeleton, bindposes)) => {
+                let bound = self.bind(mesh, &plan, (&skeleton.joints, bindposes), &mut targets, skeletons)?;
+                Skinning(Some(Box::new(bound)))
+            }
+            None => Skinning(None),
+        };
         let to_world = pending.to_world;
         let mut tethered = None;
         if is_large(mesh) {
@@ -75,7 +90,18 @@ impl CandidateItem<'_, '_> {
         }
         let mut state = self.state_at_rest(&plan, to_world, pose, material);
         let (mut attachments, mut input) = (ClothAttachments::default(), StepInput::default());
-        attach::pins::hold(&mut state, &mut attachments, &mut input, &targets, self.entity, poses);
+        let mut skinning = skinning;
+        if let Some(bound) = &mut skinning.0 {
+            wear(&mut state, bound);
+        }
+        attach::pins::hold(
+            &mut state,
+            &mut attachments,
+            &mut input,
+            &targets,
+            (self.entity, &skinning),
+            &skeletons.poses,
+        );
         if let Some((key, mut tethers)) = tethered {
             if key.pins == pinned(&targets) {
                 attachments.tether_build = None;
@@ -85,8 +111,8 @@ impl CandidateItem<'_, '_> {
             }
             attachments.set_tethers(&mut state, tethers);
         }
-        let mesh = self.copy_of(mesh);
-        Ok(Some(Built { state, attachments, input, binding: plan.binding, mesh, positions: plan.positions }))
+        let mesh = self.copy_of(mesh, skinning.0.is_some());
+        Ok(Some(Built { state, attachments, input, skinning, binding: plan.binding, mesh, positions: plan.positions }))
     }
 
     /// What is built of the cloth, with `to_world` as its rotation and scale by now.
@@ -153,12 +179,16 @@ impl CandidateItem<'_, '_> {
         state
     }
 
-    /// Copies the user's mesh to be drawn. Warns once of a skin or morph targets, which aren't followed.
-    fn copy_of(&mut self, mesh: &Mesh) -> Mesh {
+    /// Copies the user's mesh to be drawn. Warns once of morph targets, which aren't followed, and of a skin without a skeleton.
+    fn copy_of(&mut self, mesh: &Mesh, is_worn: bool) -> Mesh {
         let warned = &mut *self.warned;
-        let (copy, Lost { skin, morph_targets }) = copy_without_skin(mesh);
+        let (copy, Lost { skin, morph_targets }) = if is_worn { copy_with_skin(mesh) } else { copy_without_skin(mesh) };
         if skin && !core::mem::replace(&mut warned.skin, true) {
-            warn!("cloth {} is simulated and drawn from its bind pose: its skin isn't followed yet", self.entity);
+            warn!(
+                "cloth {} is simulated and drawn from its bind pose: its mesh has a skin, and the entity no SkinnedMesh; \
+                 insert one to have its skeleton followed",
+                self.entity
+            );
         }
         if morph_targets && !core::mem::replace(&mut warned.morph_targets, true) {
             warn!("cloth {} is simulated and drawn without its morph targets: they aren't followed yet", self.entity);
@@ -196,6 +226,7 @@ impl CandidateItem<'_, '_> {
         *self.state = built.state;
         *self.attachments = built.attachments;
         *self.input = built.input;
+        *self.skinning = built.skinning;
         self.sleep.start_over();
         *self.status = ClothStatus::Ready;
         resolution::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &self.state, &mut self.warned);

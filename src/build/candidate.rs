@@ -1,6 +1,6 @@
 //! A cloth that may have to be built: whether it has, and what is said where it can't be.
 
-use bevy::{ecs::query::QueryData, prelude::*};
+use bevy::{ecs::query::QueryData, mesh::skinning::SkinnedMesh, prelude::*};
 
 use super::system::MeshNews;
 use crate::{
@@ -9,9 +9,10 @@ use crate::{
     error::ClothError,
     fabric::{ClothSprings, Fabric},
     pins::Pins,
+    skin::ClothSkin,
     state::{
         ClothAttachments, ClothFailed, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests,
-        ResetCause, Sleep, StepInput, Warned,
+        ResetCause, Skinning, Sleep, StepInput, Warned,
     },
 };
 
@@ -25,6 +26,9 @@ pub(crate) struct Candidate {
     pub(super) fabric: Ref<'static, Fabric>,
     pub(super) springs: Option<Ref<'static, ClothSprings>>,
     pub(super) pins: Ref<'static, Pins>,
+    pub(super) skin: Option<Ref<'static, ClothSkin>>,
+    pub(super) skeleton: Option<Ref<'static, SkinnedMesh>>,
+    pub(super) skinning: &'static mut Skinning,
     pub(super) transform: Ref<'static, GlobalTransform>,
     pub(super) status: &'static mut ClothStatus,
     pub(super) state: &'static mut ClothState,
@@ -63,6 +67,8 @@ impl CandidateItem<'_, '_> {
             || self.fabric.is_changed()
             || self.springs.as_ref().is_some_and(DetectChanges::is_changed)
             || self.pins.is_changed()
+            || self.skin.as_ref().is_some_and(DetectChanges::is_changed)
+            || self.skeleton.as_ref().is_some_and(DetectChanges::is_changed)
             || self.transform.is_changed()
             || self.mesh.is_changed();
         let reset = self.requests.reset;
@@ -75,9 +81,17 @@ impl CandidateItem<'_, '_> {
                 None => Some(Cause::First),
                 // `Mesh3d` was replaced, be it by the mesh that the cloth was made from.
                 Some(own) if own.drawn != self.mesh.0 => Some(Cause::Again(ResetCause::Rebuilt)),
-                Some(_) => changed.then_some(Cause::Again(ResetCause::Rebuilt)),
+                // Another skeleton, or one for the first time.
+                Some(_) => (changed || self.has_new_skeleton()).then_some(Cause::Again(ResetCause::Rebuilt)),
             },
         }
+    }
+
+    /// Whether its skeleton isn't the one that it was bound to.
+    fn has_new_skeleton(&self) -> bool {
+        let bound = self.skinning.0.as_ref();
+        let is_other = |skeleton: &Ref<SkinnedMesh>| bound.is_none_or(|bound| bound.joints != skeleton.joints);
+        self.skeleton.as_ref().is_some_and(|skeleton| skeleton.is_changed() && is_other(skeleton))
     }
 
     /// The mesh isn't there yet: it is looked for again in the next frame.

@@ -11,10 +11,10 @@ use crate::{
     cloth::{Cloth, InForce},
     draw::{self, ClothMesh},
     error::ClothError,
-    frame::Poses,
+    frame::Skeletons,
     state::{
-        ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, Sleep, StepInput,
-        Warned,
+        ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, Skinning, Sleep,
+        StepInput, Warned,
     },
 };
 
@@ -36,7 +36,7 @@ pub(crate) fn build_cloths(
     mut mesh_events: MessageReader<AssetEvent<Mesh>>,
     assets: Option<Res<AssetServer>>,
     mut cache: ResMut<PlanCache>,
-    poses: Poses,
+    skeletons: Skeletons,
 ) {
     let news = MeshNews::read(&mut mesh_events);
     cache.update(|mesh| news.changed.contains(&mesh));
@@ -49,7 +49,7 @@ pub(crate) fn build_cloths(
         let Some(cause) = candidate.cause(source.id(), &news) else { continue };
         let source = source.clone();
         let built = match meshes.get(&source) {
-            Some(mesh) => candidate.build(source.id(), mesh, &mut cache, &poses),
+            Some(mesh) => candidate.build(source.id(), mesh, &mut cache, &skeletons),
             None => match assets.as_ref().map(|assets| assets.load_state(&source)) {
                 Some(LoadState::Failed(error)) => Err(ClothError::NotLoaded { reason: error.to_string() }),
                 _ => {
@@ -109,5 +109,5 @@ pub(crate) fn on_cloth_removed(
     commands
         .entity(removed.entity)
         .try_remove::<(ClothMesh, ClothState, ClothAttachments, ClothGrabs, ClothReport, ClothStatus)>()
-        .try_remove::<(InForce, PendingBuild, Requests, Sleep, StepInput, Warned)>();
+        .try_remove::<(InForce, PendingBuild, Requests, Skinning, Sleep, StepInput, Warned)>();
 }

@@ -3,7 +3,7 @@
 use bevy::{ecs::entity_disabling::Disabled, prelude::*};
 
 use crate::{
-    state::{self, ClothAttachments, ClothGrabs, ClothState},
+    state::{self, ClothAttachments, ClothGrabs, ClothState, Skinning},
     surroundings::{
         collider::{ColliderMemory, Obstacles, changes::ObstacleChanges},
         wind::Winds,
@@ -58,9 +58,12 @@ impl WorldShiftCommands for Commands<'_, '_> {
 
 /// Shifts all that cloth keeps of places.
 fn shift(world: &mut World, by: Vec3) {
-    let mut cloths =
-        world.query_filtered::<(&mut ClothState, &mut ClothAttachments, &mut ClothGrabs), Allow<Disabled>>();
-    for (mut state, mut attachments, mut grabs) in cloths.iter_mut(world) {
+    let mut cloths = world
+        .query_filtered::<(&mut ClothState, &mut ClothAttachments, &mut ClothGrabs, &mut Skinning), Allow<Disabled>>();
+    for (mut state, mut attachments, mut grabs, mut skinning) in cloths.iter_mut(world) {
+        if let Some(bound) = &mut skinning.0 {
+            bound.shift(by);
+        }
         state::shift(&mut state, &mut attachments, &mut grabs, by);
     }
     let mut colliders = world.query_filtered::<&mut ColliderMemory, Allow<Disabled>>();

@@ -9,11 +9,11 @@ use bevy::{
     prelude::*,
 };
 
-use super::{Binding, carry::Carry, shading};
+use super::{Binding, bind_space::BindSpace, carry::Carry, shading};
 use crate::{
     frame::{self, ClothClock, is_invertible},
     solver::build::weld::NO_PARTICLE,
-    state::{ClothAttachments, ClothState, Requests},
+    state::{BoundSkin, ClothAttachments, ClothState, Requests, Skinning},
 };
 
 /// The meshes of a cloth: the one that it was made from, and its own copy, which is drawn.
@@ -48,30 +48,38 @@ pub(crate) struct Drawn {
     /// Position of each particle; none before the first time.
     pub particles: Vec<Vec3A>,
     sums: Vec<Vec3A>,
+    /// For cloth on a skeleton.
+    bind_space: BindSpace,
 }
 
 /// Computes what every cloth looks like at the moment that is drawn.
 pub(crate) fn shape_cloths(
-    mut cloths: Query<(&ClothState, &ClothAttachments, &Requests, &GlobalTransform, &mut ClothMesh)>,
+    mut cloths: Query<(&ClothState, &ClothAttachments, &Skinning, &Requests, &GlobalTransform, &mut ClothMesh)>,
     poses: Query<&GlobalTransform>,
     clock: ClothClock,
     _main_thread: NonSendMarker,
 ) {
     let now = clock.overstep();
-    frame::for_each(cloths.iter_mut(), clock.parallel(), |(state, attachments, requests, transform, mut mesh)| {
-        let ClothMesh { binding, shape, .. } = &mut *mesh;
-        shape.update((state, attachments, requests), binding, transform.affine(), &poses, now);
-    });
+    frame::for_each(
+        cloths.iter_mut(),
+        clock.parallel(),
+        |(state, attachments, skinning, requests, transform, mut mesh)| {
+            let ClothMesh { binding, shape, .. } = &mut *mesh;
+            let parts = (state, attachments, skinning.0.as_deref(), requests);
+            shape.update(parts, binding, transform.affine(), &poses, now);
+        },
+    );
 }
 
 /// Writes what has changed into the mesh assets.
-pub(crate) fn write_meshes(mut cloths: Query<&mut ClothMesh>, mut meshes: ResMut<Assets<Mesh>>) {
-    for mut cloth in &mut cloths {
+pub(crate) fn write_meshes(mut cloths: Query<(&mut ClothMesh, &Skinning)>, mut meshes: ResMut<Assets<Mesh>>) {
+    for (mut cloth, skinning) in &mut cloths {
         if cloth.shape.is_new
             && let Some(mesh) = meshes.get_mut(&cloth.drawn)
         {
-            cloth.shape.is_new = false;
-            cloth.shape.write(mesh.into_inner());
+            let ClothMesh { binding, shape, .. } = &mut *cloth;
+            shape.is_new = false;
+            shape.write(mesh.into_inner(), skinning.0.as_deref(), binding);
         }
     }
 }
@@ -94,7 +102,7 @@ impl Drawn {
     /// of all entities by now.
     fn update(
         &mut self,
-        (state, attachments, requests): (&ClothState, &ClothAttachments, &Requests),
+        (state, attachments, bound, requests): (&ClothState, &ClothAttachments, Option<&BoundSkin>, &Requests),
         binding: &Binding,
         pose: Affine3A,
         poses: &Query<&GlobalTransform>,
@@ -104,8 +112,14 @@ impl Drawn {
         let (pose, anchors) = if requests.teleport { (state.pose, &[][..]) } else { (pose, &*attachments.anchors) };
         // Where nothing has moved, each moment of the step looks the same.
         let now = if state.is_still { 1.0 } else { now };
-        let key = (state.steps, now, pose);
-        self.next_carry.update(state.origin.into(), anchors, now, pose.translation, poses);
+        // In bind space, what moves with its skeleton stays the same.
+        let key = (state.steps, now, if bound.is_some() { Affine3A::IDENTITY } else { pose });
+        // A teleport that is asked for takes bind space along.
+        if bound.is_some_and(|bound| requests.teleport || !self.bind_space.read_joints(bound, poses)) {
+            return;
+        }
+        let place = if bound.is_some() { self.bind_space.place } else { pose.translation };
+        self.next_carry.update(state.origin.into(), anchors, now, place, poses);
         let is_known = self.key == Some(key) && self.carry == self.next_carry;
         if state.particles.is_empty() || is_known || !is_invertible(&pose) {
             return;
@@ -113,45 +127,68 @@ impl Drawn {
         core::mem::swap(&mut self.carry, &mut self.next_carry);
         self.key = Some(key);
         self.is_new = true;
-        let to_local = pose.matrix3.inverse();
+        let to_local = Affine3A { matrix3: pose.matrix3, translation: pose.translation - place }.inverse();
         let places = state.step_start.iter().zip(&state.particles.position).map(|(start, &end)| start.lerp(end, now));
         self.particles.clear();
         match self.carry.weights(attachments) {
             Some(weights) => {
                 let carried = places.enumerate().map(|(i, place)| self.carry.blend(place, weights.of(i)));
-                self.particles.extend(carried.map(|place| to_local * place));
+                self.particles.extend(carried);
             }
             None => {
                 let carry = self.carry.whole();
-                self.particles.extend(places.map(|place| to_local * carry.transform_point3a(place)));
+                self.particles.extend(places.map(|place| carry.transform_point3a(place)));
             }
         }
+        if let Some(bound) = bound {
+            self.bind_space.note_pins(&attachments.pins, self.particles.len());
+            self.bind_space.positions.resize(self.positions.len(), [0.0; 3]);
+            place_vertices(&self.particles, binding, &mut self.bind_space.positions);
+            self.shade(binding, true);
+            self.bind_space.write_positions(&bound.vertices, &binding.particle_of_vertex, &mut self.positions);
+            let (normals, tangents) = (&mut self.normals, &mut self.tangents);
+            self.bind_space.write_directions(&bound.vertices, &binding.particle_of_vertex, normals, tangents);
+        }
+        self.particles.iter_mut().for_each(|particle| *particle = to_local.transform_point3a(*particle));
         // What doesn't fit into an f32, far away or under a huge scale, leaves what was drawn.
         if !self.particles.iter().all(|place| place.is_finite()) {
             self.is_new = false;
             return;
         }
-        for (place, &particle) in self.positions.iter_mut().zip(&*binding.particle_of_vertex) {
-            if particle != NO_PARTICLE {
-                *place = self.particles[particle as usize].to_array();
-            }
-        }
         self.bounds = bounds(&self.particles);
-        self.shade(binding);
+        if bound.is_none() {
+            place_vertices(&self.particles, binding, &mut self.positions);
+            self.shade(binding, false);
+        }
     }
 
-    fn shade(&mut self, binding: &Binding) {
+    /// Works out normals and tangents of the vertices: of those in the axes of the world, or of the mesh's own.
+    fn shade(&mut self, binding: &Binding, in_world: bool) {
         let Some(groups) = &binding.normals else { return };
-        shading::normals(binding, groups, &self.positions, &mut self.sums);
+        let positions = if in_world { &self.bind_space.positions } else { &self.positions };
+        shading::normals(binding, groups, positions, &mut self.sums);
         self.normals.clear();
         self.normals.extend(groups.of_vertex.iter().map(|&g| self.sums[g as usize].to_array()));
         if let Some(tangents) = &binding.tangents {
-            let Self { positions, normals, sums, tangents: shown, .. } = self;
+            let Self { normals, sums, tangents: shown, .. } = self;
             shading::tangents(binding, tangents, positions, normals, sums, shown);
         }
     }
 
-    fn write(&self, mesh: &mut Mesh) {
+    fn write(&mut self, mesh: &mut Mesh, bound: Option<&BoundSkin>, binding: &Binding) {
+        if let Some(bound) = bound
+            && core::mem::take(&mut self.bind_space.is_new)
+        {
+            let influences = || self.bind_space.influences(&bound.vertices, &binding.particle_of_vertex);
+            if let Some(VertexAttributeValues::Uint16x4(joints)) = values(mesh, Mesh::ATTRIBUTE_JOINT_INDEX) {
+                joints.clear();
+                joints.extend(influences().map(|(joints, _)| joints));
+            }
+            if let Some(VertexAttributeValues::Float32x4(weights)) = values(mesh, Mesh::ATTRIBUTE_JOINT_WEIGHT) {
+                weights.clear();
+                weights.extend(influences().map(|(_, weights)| weights));
+            }
+        }
         if let Some(VertexAttributeValues::Float32x3(values)) = values(mesh, Mesh::ATTRIBUTE_POSITION) {
             values.clone_from(&self.positions);
         }
@@ -167,6 +204,15 @@ impl Drawn {
         }
         // Spares Bevy two scans of all positions, and keeps the cloth from being culled by where it was.
         mesh.final_aabb = self.bounds;
+    }
+}
+
+/// Puts vertices where their particles are. Those in no triangle stay.
+fn place_vertices(particles: &[Vec3A], binding: &Binding, positions: &mut [[f32; 3]]) {
+    for (place, &particle) in positions.iter_mut().zip(&*binding.particle_of_vertex) {
+        if particle != NO_PARTICLE {
+            *place = particles[particle as usize].to_array();
+        }
     }
 }
 

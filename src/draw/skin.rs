@@ -48,6 +48,15 @@ pub(crate) fn copy_without_skin(mesh: &Mesh) -> (Mesh, Lost) {
     (copy, Lost { skin, morph_targets })
 }
 
+/// A copy whose vertices are drawn in bind space, by the skin that they have.
+pub(crate) fn copy_with_skin(mesh: &Mesh) -> (Mesh, Lost) {
+    let morph_targets = mesh.try_has_morph_targets().unwrap_or_default();
+    let mut copy = if morph_targets { copy_without_morph_targets(mesh) } else { mesh.clone() };
+    // Those of the skin alone: cloth is elsewhere.
+    copy.set_skinned_mesh_bounds(None);
+    (copy, Lost { skin: false, morph_targets })
+}
+
 /// Morph targets can be set, and not be unset.
 fn copy_without_morph_targets(mesh: &Mesh) -> Mesh {
     let mut copy = Mesh::new(mesh.primitive_topology(), mesh.asset_usage);

@@ -12,7 +12,9 @@ use bevy::{
 use crate::{
     cloth::InForce,
     solver::MAX_TIME_STEP,
-    state::{ClothAttachments, ClothReport, ClothSleepingDisabled, ClothState, ClothStatus, Sleep, StepInput},
+    state::{
+        ClothAttachments, ClothReport, ClothSleepingDisabled, ClothState, ClothStatus, Skinning, Sleep, StepInput,
+    },
 };
 
 /// All of a cloth that a step reads and writes.
@@ -26,6 +28,7 @@ pub(crate) struct Stepped {
     pub in_force: &'static InForce,
     pub input: &'static mut StepInput,
     pub report: &'static mut ClothReport,
+    pub skinning: &'static Skinning,
     pub sleep: &'static mut Sleep,
     pub is_sleeping_disabled: Has<ClothSleepingDisabled>,
 }

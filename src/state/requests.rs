@@ -28,8 +28,14 @@ pub(crate) struct Warned {
     pub margin: bool,
     /// The mesh is too coarse for its fabric: by how many times its edges were too long when that was told, or 0.
     pub coarseness: f32,
-    /// The mesh has a skin.
+    /// The mesh has a skin, and no skeleton.
     pub skin: bool,
+    /// What is painted is no distance.
+    pub paint: bool,
+    /// Nothing holds it on its skeleton.
+    pub falls_off: bool,
+    /// A joint of its skeleton is gone.
+    pub lost_joint: bool,
     /// The mesh has morph targets.
     pub morph_targets: bool,
 }

@@ -62,3 +62,4 @@ mod teleports;
 mod uneven_flags;
 mod violence;
 mod winds;
+mod worn;

@@ -14,6 +14,7 @@ use crate::{
     draw::TakenOff,
     error::ClothError,
     frame::{JumpDetection, PastPose},
+    mesh_input,
     solver::{MeshShape, Shape},
 };
 use library::Library;
@@ -26,7 +27,6 @@ mod library;
 mod posed;
 mod prepared;
 mod scale;
-mod skin;
 pub(crate) mod triangles;
 
 pub use height_field::HeightField;
@@ -110,7 +110,7 @@ impl MeshColliderItem<'_, '_> {
     ) -> Result<Option<(Shape, Isometry3d)>, ColliderError> {
         let source = self.source(library)?;
         let Some(contents) = library.contents(source, &self.collider.shape)? else { return Ok(None) };
-        let is_skinned = matches!(contents, Contents::Mesh(mesh) if skin::is_skinned(mesh));
+        let is_skinned = matches!(contents, Contents::Mesh(mesh) if mesh_input::is_skinned(mesh));
         // Cloth is drawn without its skin, and what collides beside it still follows it.
         let skeleton = self.skeleton.or(self.taken.and_then(|taken| taken.skin.as_ref())).filter(|_| is_skinned);
         let (end, scale) = match skeleton {

@@ -4,7 +4,7 @@ use bevy::{
     asset::LoadState,
     ecs::system::SystemParam,
     math::{Affine3A, Isometry3d, Mat3A},
-    mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    mesh::skinning::SkinnedMesh,
     prelude::*,
 };
 
@@ -15,7 +15,7 @@ use super::{
 use crate::{
     draw::ClothMesh,
     error::ClothError,
-    frame::Poses,
+    frame::{Skeletons, joint_matrices},
     surroundings::collider::{ColliderShape, error::ColliderError},
 };
 
@@ -23,10 +23,9 @@ use crate::{
 #[derive(SystemParam)]
 pub(crate) struct Library<'w, 's> {
     meshes: Res<'w, Assets<Mesh>>,
-    bindposes: Option<Res<'w, Assets<SkinnedMeshInverseBindposes>>>,
     assets: Option<Res<'w, AssetServer>>,
     cloths: Query<'w, 's, &'static ClothMesh>,
-    poses: Poses<'w, 's>,
+    skeletons: Skeletons<'w, 's>,
 }
 
 impl Library<'_, '_> {
@@ -37,7 +36,7 @@ impl Library<'_, '_> {
 
     /// Pose and scale of an entity.
     pub(super) fn pose_and_scale(&self, entity: Entity) -> Result<(Isometry3d, Mat3A), ColliderError> {
-        let pose = self.poses.compute_global_transform(entity).map_err(|_| ColliderError::NoSize)?;
+        let pose = self.skeletons.poses.compute_global_transform(entity).map_err(|_| ColliderError::NoSize)?;
         Ok(scale::split(pose.affine()))
     }
 
@@ -72,21 +71,11 @@ impl Library<'_, '_> {
         skeleton: &SkinnedMesh,
         joints: &mut Vec<Affine3A>,
     ) -> Result<Option<(Isometry3d, Mat3A)>, ColliderError> {
-        let bindposes = self.bindposes.as_ref().and_then(|poses| poses.get(&skeleton.inverse_bindposes));
-        let Some(bindposes) = bindposes else { return Ok(None) };
-        joints.clear();
-        let poses = skeleton.joints.iter().map_while(|&joint| self.poses.compute_global_transform(joint).ok());
-        joints.extend(poses.map(|pose| pose.affine()));
-        joints.truncate(bindposes.len());
-        let Some(first) = joints.first() else {
+        let Some(bindposes) = self.skeletons.bindposes(skeleton) else { return Ok(None) };
+        let pose = |joint| self.skeletons.pose(joint);
+        let Some(place) = joint_matrices(&skeleton.joints, bindposes, pose, joints) else {
             return Err(ColliderError::Skeleton { needed: skeleton.joints.len().max(1), found: 0 });
         };
-        let place = first.translation;
-        for (joint, &bindpose) in joints.iter_mut().zip(&**bindposes) {
-            // Differences first: far from the world's origin, only they have precision left.
-            joint.translation -= place;
-            *joint *= Affine3A::from_mat4(bindpose);
-        }
         if !(place.is_finite() && joints.iter().all(|joint| joint.is_finite())) {
             return Err(ColliderError::NoSize);
         }

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use bevy::math::{Affine3A, Vec3A};
 
-use super::skin::Skin;
-use crate::{solver::DeformedPoints, surroundings::collider::error::ColliderError};
+use crate::{mesh_input::Skin, solver::DeformedPoints, surroundings::collider::error::ColliderError};
 
 /// The points of the latest steps, the latest first.
 ///

@@ -13,12 +13,11 @@ use bevy::{
 use super::{
     height_field::HeightField,
     hull::hull_of,
-    skin::Skin,
     triangles::{self, Made},
 };
 use crate::{
     error::ClothError,
-    mesh_input::{self, Jobs},
+    mesh_input::{self, Jobs, Skin},
     solver::{SourceMesh, TriangleMesh},
     surroundings::collider::error::ColliderError,
 };

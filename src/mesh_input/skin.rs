@@ -1,7 +1,7 @@
-//! How the points of a mesh follow the joints of a skeleton. Knows no entities.
+//! Reads how the points of a mesh follow the joints of a skeleton: linear blend skinning, as Bevy does it. Knows no entities.
 
 use bevy::{
-    math::{Affine3A, Vec3A},
+    math::{Affine3A, Mat3A, Vec3A},
     mesh::VertexAttributeValues,
     prelude::*,
 };
@@ -9,9 +9,9 @@ use bevy::{
 /// Joints that a point follows, at most.
 const JOINTS: usize = 4;
 
-/// What a skeleton does to the points of a collider.
+/// How points of a mesh follow joints.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Skin {
+pub(crate) struct Skin {
     points: Vec<SkinPoint>,
     /// Number of joints that the points follow, and of those before them.
     pub joint_count: usize,
@@ -19,16 +19,16 @@ pub(super) struct Skin {
 
 /// A point, and how it follows joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct SkinPoint {
+pub(crate) struct SkinPoint {
     /// Its place in the mesh's own space.
-    place: Vec3A,
-    joints: [u16; JOINTS],
+    pub place: Vec3A,
+    pub joints: [u16; JOINTS],
     /// Shares of the joints; their sum is 1.
-    weights: [f32; JOINTS],
+    pub weights: [f32; JOINTS],
 }
 
 /// Whether a mesh says how it follows joints.
-pub(super) fn is_skinned(mesh: &Mesh) -> bool {
+pub(crate) fn is_skinned(mesh: &Mesh) -> bool {
     influences(mesh).is_some()
 }
 
@@ -61,6 +61,22 @@ impl Skin {
         Some(Self { points, joint_count: last.map_or(0, |joint| usize::from(joint) + 1) })
     }
 
+    /// The points, in the order of the vertices that were given.
+    pub fn points(&self) -> &[SkinPoint] {
+        &self.points
+    }
+
+    /// The joint that has the most of some points, with the sum of their weights.
+    pub fn main_joint(&self, points: impl Iterator<Item = usize>) -> u16 {
+        let mut sums = vec![0.0; self.joint_count];
+        for point in points.map(|point| &self.points[point]) {
+            for (&joint, weight) in point.joints.iter().zip(point.weights).filter(|(_, weight)| *weight > 0.0) {
+                sums[usize::from(joint)] += weight;
+            }
+        }
+        strongest((0..).zip(sums))
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.points.len()
@@ -70,15 +86,35 @@ impl Skin {
     /// as many as the skin follows.
     pub fn pose(&self, joints: &[Affine3A], places: &mut [Vec3A]) {
         for (point, place) in self.points.iter().zip(places) {
-            let mut sum = Vec3A::ZERO;
-            for (&joint, &weight) in point.joints.iter().zip(&point.weights) {
-                if weight > 0.0 {
-                    sum += weight * joints[usize::from(joint)].transform_point3a(point.place);
-                }
-            }
-            *place = sum;
+            let joints = point.influences().map(|(joint, weight)| (&joints[joint], weight));
+            *place = joints.map(|(joint, weight)| weight * joint.transform_point3a(point.place)).sum();
         }
     }
+}
+
+impl SkinPoint {
+    /// The joints that it follows, with their weights.
+    fn influences(&self) -> impl Iterator<Item = (usize, f32)> {
+        let joints = self.joints.iter().map(|&joint| usize::from(joint)).zip(self.weights);
+        joints.filter(|&(_, weight)| weight > 0.0)
+    }
+
+    /// The joint that it follows most.
+    pub fn strongest(&self) -> u16 {
+        strongest(self.joints.into_iter().zip(self.weights))
+    }
+
+    /// Rotation and scale that the joints give its surroundings.
+    pub fn matrix(&self, joints: &[Affine3A]) -> Mat3A {
+        let sum = |sum: Mat3A, (joint, weight): (usize, f32)| sum + joints[joint].matrix3 * weight;
+        self.influences().fold(Mat3A::ZERO, sum)
+    }
+}
+
+/// The joint of the largest weight: the first of them; joint 0 where there is none.
+fn strongest(weights: impl Iterator<Item = (u16, f32)>) -> u16 {
+    let first = (0, f32::NEG_INFINITY);
+    weights.fold(first, |most, next| if next.1 > most.1 { next } else { most }).0
 }
 
 /// Weights as shares, by Bevy's rule: negative ones are none, and where there are none the first joint has it all.

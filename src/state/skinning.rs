@@ -1,0 +1,187 @@
+//! How a cloth hangs on the skeleton of its mesh.
+
+use std::sync::Arc;
+
+use bevy::{
+    math::{Affine3A, Vec3A},
+    prelude::*,
+};
+
+use crate::{
+    frame::{Skeletons, is_invertible, joint_matrices},
+    mesh_input::Skin,
+    pins::PinTarget,
+    solver::{self, SkinLimit, SkinLimits, SkinPose, Topology},
+    state::HeldPin,
+};
+
+/// The skeleton that a cloth is worn on, if its mesh is skinned. Comes with [`Cloth`](crate::prelude::Cloth).
+#[derive(Component, Clone, Debug, Default)]
+#[component(clone_behavior = Ignore)]
+pub(crate) struct Skinning(pub Option<Box<BoundSkin>>);
+
+impl Skinning {
+    /// The entity that a cloth goes with: the joint that has most of it, or else the `cloth` itself.
+    pub fn carrier(&self, cloth: Entity) -> Entity {
+        self.0.as_ref().map_or(cloth, |bound| bound.main_joint())
+    }
+}
+
+/// A cloth that is bound to a skeleton.
+#[derive(Clone, Debug)]
+pub(crate) struct BoundSkin {
+    /// How particles follow the joints.
+    pub skin: Arc<Skin>,
+    /// How vertices do.
+    pub vertices: Arc<Skin>,
+    /// The joints, and their inverse bind poses.
+    pub joints: Vec<Entity>,
+    pub bindposes: Vec<Mat4>,
+    /// The joint that the cloth as a whole goes with, by its number.
+    main: usize,
+    /// How far particles may be from the skin; none where only pins are held by it.
+    limits: Option<Arc<SkinLimits>>,
+    /// Own frequency, Hz, and damping ratio of the pull.
+    pull: [f32; 2],
+    /// Where the skin has the particles at the start and the end of the latest step, relative to `origin`.
+    start: SkinPose,
+    end: SkinPose,
+    origin: Vec3,
+    /// What the joints do to the mesh by now, relative to `place`.
+    matrices: Vec<Affine3A>,
+    place: Vec3A,
+    /// Whether all joints are there.
+    is_whole: bool,
+}
+
+impl BoundSkin {
+    /// Binds a cloth to a skeleton, with its joints as they are by now. Those of the particles that are `held` say with which it goes.
+    /// None where a joint isn't there, or flat.
+    pub fn new(
+        (skin, vertices): (Skin, Skin),
+        (joints, bindposes): (&[Entity], &[Mat4]),
+        held: impl Fn(usize) -> bool,
+        skeletons: &Skeletons,
+    ) -> Option<Self> {
+        let held: Vec<usize> = (0..skin.len()).filter(|&particle| held(particle)).collect();
+        let main = if held.is_empty() { skin.main_joint(0..skin.len()) } else { skin.main_joint(held.into_iter()) };
+        let mut bound = Self {
+            skin: skin.into(),
+            vertices: vertices.into(),
+            joints: joints.to_vec(),
+            bindposes: bindposes.to_vec(),
+            main: main.into(),
+            limits: None,
+            pull: [0.0, 1.0],
+            start: SkinPose::default(),
+            end: SkinPose::default(),
+            origin: Vec3::ZERO,
+            matrices: Vec::new(),
+            place: Vec3A::ZERO,
+            is_whole: false,
+        };
+        bound.read_joints(skeletons);
+        bound.pose().is_some().then_some(bound)
+    }
+
+    /// The joint that the cloth as a whole goes with.
+    pub fn main_joint(&self) -> Entity {
+        self.joints[self.main]
+    }
+
+    /// What that joint does to the mesh by now; none while a joint isn't there.
+    pub fn pose(&self) -> Option<Affine3A> {
+        let mut pose = *self.matrices.get(self.main).filter(|_| self.is_whole)?;
+        pose.translation += self.place;
+        is_invertible(&pose).then_some(pose)
+    }
+
+    /// Whether all joints were there in the latest step.
+    pub fn is_whole(&self) -> bool {
+        self.is_whole
+    }
+
+    /// Reads where the joints are by now.
+    pub fn read_joints(&mut self, skeletons: &Skeletons) {
+        let pose = |joint| skeletons.pose(joint);
+        let place = joint_matrices(&self.joints, &self.bindposes, pose, &mut self.matrices);
+        self.is_whole = place.is_some_and(|place| place.is_finite())
+            && self.matrices.len() >= self.skin.joint_count.max(self.vertices.joint_count)
+            && self.matrices.iter().all(|matrix| matrix.is_finite());
+        self.place = place.unwrap_or(self.place);
+    }
+
+    /// Sets how far particles may be from the skin, and the own frequency, Hz, and damping ratio of the pull towards it.
+    pub fn limit(&mut self, limits: &[SkinLimit], pull: [f32; 2], topology: &Topology) {
+        let is_free = |limit: &SkinLimit| limit.max_distance == f32::INFINITY && limit.backstop.is_none();
+        let limits_any = pull[0] > 0.0 || !limits.iter().all(is_free);
+        self.limits = limits_any.then(|| Arc::new(SkinLimits::new(limits, topology)));
+        self.pull = pull;
+    }
+
+    /// Whether the skin moves in the coming step.
+    pub fn moves(&self) -> bool {
+        self.start.place != self.end.place
+    }
+
+    /// Takes the step from where the skin was to where it is by now, relative to the cloth's `origin`. One that `has_jumped` comes from
+    /// where it is.
+    pub fn advance(&mut self, topology: &Topology, origin: Vec3, has_jumped: bool) {
+        core::mem::swap(&mut self.start, &mut self.end);
+        let shift = Vec3A::from(self.origin - origin);
+        self.origin = origin;
+        let is_first = self.start.place.len() != self.skin.len();
+        if shift != Vec3A::ZERO {
+            self.start.place.iter_mut().for_each(|place| *place += shift);
+        }
+        if self.is_whole {
+            self.end.place.resize(self.skin.len(), Vec3A::ZERO);
+            self.skin.pose(&self.matrices, &mut self.end.place);
+            let offset = self.place - Vec3A::from(origin);
+            self.end.place.iter_mut().for_each(|place| *place += offset);
+            if self.limits.is_some() {
+                normals(topology, &self.end.place, &mut self.end.normal);
+            }
+        } else {
+            self.end.clone_from(&self.start);
+        }
+        if has_jumped || is_first || self.start.normal.len() != self.end.normal.len() {
+            self.start.clone_from(&self.end);
+        }
+    }
+
+    /// Where the skin has the particles at the end of the coming step, relative to the cloth's origin, m.
+    pub fn places(&self) -> &[Vec3A] {
+        &self.end.place
+    }
+
+    /// What holds the cloth in the coming step besides its pins.
+    pub fn as_constraint(&self) -> Option<solver::Skin<'_>> {
+        let [pull, pull_damping] = self.pull;
+        let limits = self.limits.as_deref()?;
+        Some(solver::Skin { pull, pull_damping, ..solver::Skin::new(limits, &self.start, &self.end) })
+    }
+
+    /// Where the skin holds a pinned particle; none where something else does.
+    pub fn holds(&self, pin: &HeldPin) -> Option<Vec3A> {
+        let place = self.end.place.get(pin.particle as usize).filter(|_| pin.target == PinTarget::Cloth);
+        place.copied().filter(|place| place.is_finite())
+    }
+
+    /// The world has been shifted, and the skeleton with it.
+    pub fn shift(&mut self, by: Vec3) {
+        self.origin += by;
+        self.place += Vec3A::from(by);
+    }
+}
+
+/// Writes the normal of each particle's surroundings, not of length 1.
+fn normals(topology: &Topology, places: &[Vec3A], normals: &mut Vec<Vec3A>) {
+    normals.clear();
+    normals.resize(places.len(), Vec3A::ZERO);
+    for triangle in &topology.triangles {
+        let [a, b, c] = triangle.map(|i| places[i as usize]);
+        let normal = (b - a).cross(c - a);
+        triangle.iter().for_each(|&i| normals[i as usize] += normal);
+    }
+}
