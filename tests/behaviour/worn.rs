@@ -57,7 +57,8 @@ fn spawn_worn(app: &mut App, mesh: Mesh, root: Transform, more: impl Bundle) -> 
         .add(SkinnedMeshInverseBindposes::from(bindposes));
     let joints = [first, second];
     let skeleton = SkinnedMesh { inverse_bindposes, joints: joints.to_vec() };
-    let cloth = spawn_cloth(app, mesh, (skeleton, Pins::edge(ClothEdge::Top), more));
+    let cloth = spawn_cloth(app, mesh, (skeleton, Pins::edge(ClothEdge::Top)));
+    app.world_mut().entity_mut(cloth).insert(more);
     run(app, 1);
     Worn { cloth, joints }
 }
