@@ -7,6 +7,8 @@
 //! It has what makes real models awkward as cloth: a UV seam in the middle, where one point of the cloth is two
 //! vertices of the mesh, and pins that come from the modelling tool, as the vertex attribute `_PIN`.
 
+mod document;
+#[path = "../common/glb.rs"]
 mod glb;
 mod mesh;
 mod picture;
@@ -19,7 +21,7 @@ const SIZE: [f32; 2] = [1.5, 1.0];
 fn main() -> Result<(), Box<dyn Error>> {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
     let path = directory.join("flag.glb");
-    let file = glb::file(&mesh::flag(), &picture::png()?)?;
+    let file = document::file(&mesh::flag(), &picture::png()?)?;
     fs::create_dir_all(directory)?;
     fs::write(&path, &file)?;
     println!("{} ({} kB)", path.display(), file.len() / 1000);

@@ -19,7 +19,7 @@ pub struct FlagMesh {
     pub positions: Vec<[f32; 3]>,
     pub uvs: Vec<[f32; 2]>,
     /// 1 where the cloth is held, else 0.
-    pub pins: Vec<f32>,
+    pub pins: Vec<[f32; 1]>,
     pub indices: Vec<u16>,
 }
 
@@ -53,7 +53,7 @@ impl FlagMesh {
         self.positions.push([fraction(column, COLUMNS) * SIZE[0], -down * SIZE[1], 0.0]);
         self.uvs.push([u[0] + along * (u[1] - u[0]), down]);
         let is_pinned = column == 0 && PINNED_ROWS.contains(&row);
-        self.pins.push(if is_pinned { 1.0 } else { 0.0 });
+        self.pins.push([if is_pinned { 1.0 } else { 0.0 }]);
     }
 
     /// Neighbouring quads are cut along opposite diagonals, so that the cloth prefers neither.
