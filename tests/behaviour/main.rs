@@ -34,6 +34,7 @@ mod gravity;
 mod jerks;
 mod large_meshes;
 mod late_mesh;
+mod mannequin;
 #[cfg(feature = "mesh_colliders")]
 mod mesh_colliders;
 mod missing_plugins;
