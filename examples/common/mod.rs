@@ -24,7 +24,7 @@ use bevy::{
     window::{ExitCondition, WindowResolution},
     winit::WinitPlugin,
 };
-use bevy_drape::prelude::ATTRIBUTE_PIN;
+use bevy_drape::prelude::{ATTRIBUTE_CLOTH, ATTRIBUTE_PIN};
 use bevy_panorbit_camera::PanOrbitCameraPlugin;
 use clap::Parser;
 
@@ -113,6 +113,10 @@ fn shared_plugins() -> bevy::app::PluginGroupBuilder {
             file_path: concat!(env!("CARGO_MANIFEST_DIR"), "/assets").to_owned(),
             ..default()
         })
-        // The attribute is `_PIN` in the file: the loader strips the leading underscore before it compares.
-        .set(GltfPlugin::default().add_custom_vertex_attribute("PIN", ATTRIBUTE_PIN))
+        // The attributes are `_PIN` and `_CLOTH` in files: the loader strips the leading underscore before it compares.
+        .set(
+            GltfPlugin::default()
+                .add_custom_vertex_attribute("PIN", ATTRIBUTE_PIN)
+                .add_custom_vertex_attribute("CLOTH", ATTRIBUTE_CLOTH),
+        )
 }

@@ -7,6 +7,7 @@
 
 pub mod app;
 pub mod chaos;
+pub mod clips;
 pub mod command_line;
 pub mod contact;
 pub mod hang;

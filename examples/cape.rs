@@ -1,0 +1,71 @@
+//! A cape on a character that walks: `Cloth` on the skinned mesh of a glTF file. The collar is pinned to the skin, the rest may
+//! go as far from it as is painted in the file.
+
+mod common;
+
+use std::path::Path;
+
+use bevy::{app::AnimationSystems, prelude::*, world_serialization::WorldInstanceReady};
+use bevy_drape::prelude::*;
+use drape_lab::clips::Clip;
+
+fn main() -> Result<AppExit> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/mannequin.glb");
+    let clips = Clip::read_all(&file)?;
+    let run = clips.get("run").cloned().ok_or("the mannequin runs")?;
+    Ok(common::app("Cape", "A cape and a skirt on an animated character")
+        .add_plugins(ClothPlugin::default())
+        .insert_resource(Running(run))
+        .add_systems(Startup, (common::spawn_scenery, setup))
+        .add_systems(PostUpdate, animate.in_set(AnimationSystems).before(TransformSystems::Propagate))
+        .add_observer(dress)
+        .run())
+}
+
+/// What the character does.
+#[derive(Resource)]
+struct Running(Clip);
+
+/// Where the character runs round in a circle.
+#[derive(Component)]
+struct Runner;
+
+fn setup(mut commands: Commands, assets: Res<AssetServer>) {
+    common::spawn_camera(&mut commands, Vec3::new(2.6, 1.5, -2.6), Vec3::new(0.0, 0.95, 0.0));
+    let character = WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset("mannequin.glb")));
+    commands.spawn((character, Runner));
+    // It runs on the spot, so the wind comes from ahead.
+    commands.spawn(Wind { velocity: Vec3::new(0.3, 0.0, -4.0), gusts: 0.3, ..default() });
+}
+
+/// Makes cloth of what is named so once the scene is there, and hides the clothes that another mesh draws.
+fn dress(
+    ready: On<WorldInstanceReady>,
+    parts: Query<(Entity, &ChildOf, Has<Mesh3d>)>,
+    names: Query<&Name>,
+    children: Query<&Children>,
+    mut commands: Commands,
+) {
+    for part in children.iter_descendants(ready.entity) {
+        let Ok((entity, parent, true)) = parts.get(part) else { continue };
+        match names.get(parent.parent()).map_or("", Name::as_str) {
+            "Cape" => drop(commands.entity(entity).insert((
+                Cloth { self_collision: false, ..default() },
+                Fabric::WOOL_FLANNEL,
+                ClothSkin { backstop: Some(0.01), backstop_radius: 0.3, ..default() },
+            ))),
+            "Skirt" => {
+                drop(commands.entity(entity).insert((Cloth::default(), Fabric::COTTON_WOVEN, ClothSkin::default())))
+            }
+            "CapeFine" => drop(commands.entity(entity).insert(Visibility::Hidden)),
+            _ => {}
+        }
+    }
+}
+
+/// Poses the joints, as Bevy's `AnimationPlayer` does in a game.
+fn animate(running: Res<Running>, time: Res<Time>, mut joints: Query<(&Name, &mut Transform), Without<Runner>>) {
+    for (name, mut transform) in &mut joints {
+        running.0.pose(name, time.elapsed_secs(), &mut transform);
+    }
+}
