@@ -17,9 +17,11 @@ use crate::{
 mod in_force;
 pub(crate) mod margin;
 pub(crate) mod resolution;
+pub(crate) mod timing;
 pub(crate) mod update;
 
 pub(crate) use in_force::InForce;
+pub use timing::ClothTiming;
 
 /// Time integrator and constraint solver of a cloth. All three read the same physical constants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
@@ -66,6 +68,8 @@ impl From<ClothSolver> for Method {
 pub struct Cloth {
     /// Time integrator and constraint solver, [`ClothSolver::Strands`] by default.
     pub solver: ClothSolver,
+    /// When in a frame it steps, [`ClothTiming::Auto`] by default: in the plugin's schedule, or late, with what is drawn.
+    pub timing: ClothTiming,
     /// Target for the largest strain of springs along warp and weft, if their stiffness can hold it, no unit, greater than 0,
     /// 0.01 by default. 0.001 to 0.1. Substeps follow from it where they aren't set by hand. The smaller, the more it costs,
     /// and the livelier the cloth.
@@ -149,6 +153,7 @@ impl Default for Cloth {
     fn default() -> Self {
         Self {
             solver: ClothSolver::default(),
+            timing: ClothTiming::default(),
             max_strain: 0.01,
             substeps: None,
             levels: None,

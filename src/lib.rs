@@ -365,7 +365,7 @@ pub mod prelude {
     #[cfg(feature = "picking")]
     pub use crate::tools::picking::{ClothPickingPlugin, ClothPickingSettings, PointerGrabs};
     pub use crate::{
-        cloth::{Cloth, ClothSolver},
+        cloth::{Cloth, ClothSolver, ClothTiming},
         commands::{ClothCommands, WorldShiftCommands},
         error::ClothError,
         fabric::{ClothSprings, Fabric, FabricPreset, file::FabricFileError, handle::FabricHandle},

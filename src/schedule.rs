@@ -3,7 +3,7 @@
 use bevy::{
     app::FixedMain,
     asset::AssetEventSystems,
-    ecs::schedule::{InternedScheduleLabel, ScheduleLabel},
+    ecs::schedule::{InternedScheduleLabel, ScheduleLabel, SingleThreadedExecutor},
     prelude::*,
 };
 
@@ -30,16 +30,23 @@ pub enum ClothSystems {
     Prepare,
     /// The plugin's schedule: settings, pins, obstacles and winds are read. Move those before it.
     Gather,
-    /// The plugin's schedule: all cloths take one step. Add forces before it.
+    /// The plugin's schedule: all cloths take one step but those that step late. Add forces before it.
     Simulate,
     /// The plugin's schedule: events of the step are sent. Read positions after it.
     Finalize,
+    /// `PostUpdate`, after transforms have been propagated: cloths that step [late](crate::prelude::ClothTiming::Late) do all of
+    /// these three things, one after the other. Move what they hang on and meet before it, as animation does, and add forces
+    /// before it: in `PostUpdate`, in `Update`, or in a fixed schedule, whose forces add up until then. Read positions after it.
+    Late,
     /// `PostUpdate`, after transforms have been propagated: cloths are interpolated, shaded and written to their
     /// meshes, and grabs are told of.
     Draw,
 }
 
 /// Real-time cloth for all entities with a [`Cloth`](crate::prelude::Cloth).
+///
+/// Cloths whose [`timing`](crate::prelude::ClothTiming) is `Late` take no step in the plugin's schedule, whichever that is, but
+/// one in each frame in [`ClothSystems::Late`], as long as time goes on. Without such cloths that costs nothing.
 ///
 /// Needs Bevy's time, asset, mesh and transform plugins, which `DefaultPlugins` has; without a window, `MinimalPlugins`,
 /// `TransformPlugin`, `AssetPlugin` and `MeshPlugin`. With less it does nothing and says what is missing.
@@ -66,7 +73,8 @@ impl ClothPlugin {
     /// Steps once each time that `schedule` runs, by the time that the `Time` resource gives there.
     ///
     /// In one of Bevy's fixed schedules, what is drawn is interpolated between steps. In any other, the latest step is
-    /// drawn, and the motion depends on the frame rate as far as the time steps do.
+    /// drawn, and the motion depends on the frame rate as far as the time steps do. Cloth that steps late does so whatever the
+    /// schedule: even in `PostUpdate`, it comes after the cloths of the schedule, and after transforms have been propagated.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern(), parallel: true }
     }
@@ -100,7 +108,7 @@ impl Plugin for ClothPlugin {
             .init_resource::<changes::ObstacleChanges>()
             .init_resource::<wind::Winds>()
             .init_resource::<build::plan::PlanCache>()
-            .init_resource::<frame::StepNumber>()
+            .init_resource::<frame::Steps>()
             .init_resource::<frame::Teleported>()
             .init_resource::<frame::ColliderTeleportThreshold>()
             .insert_resource(ClothRun { fixed: self.is_fixed(), parallel: self.parallel })
@@ -116,10 +124,18 @@ impl Plugin for ClothPlugin {
             )
             .configure_sets(
                 PostUpdate,
-                ClothSystems::Draw
-                    .after(TransformSystems::Propagate)
-                    .before(AssetEventSystems)
-                    .run_if(has_what_it_needs),
+                (
+                    ClothSystems::Late
+                        .after(TransformSystems::Propagate)
+                        // Where that is the plugin's schedule.
+                        .after(ClothSystems::Finalize)
+                        .run_if(has_what_it_needs.and_then(time_goes_on)),
+                    ClothSystems::Draw
+                        .after(TransformSystems::Propagate)
+                        .before(AssetEventSystems)
+                        .run_if(has_what_it_needs),
+                )
+                    .chain(),
             )
             .add_systems(
                 PreUpdate,
@@ -129,35 +145,22 @@ impl Plugin for ClothPlugin {
                         .before(build::system::build_cloths),
                     build::system::warn_without_mesh,
                     build::system::build_cloths,
+                    cloth::timing::choose_passes.after(build::system::build_cloths),
                 )
                     .in_set(ClothSystems::Prepare),
             )
             .add_systems(
                 self.schedule,
-                (
-                    (
-                        frame::count_steps,
-                        frame::forget_teleports,
-                        cloth::update::update_settings,
-                        attach::pins::update_pins,
-                        attach::pins::advance_builds,
-                        attach::pins::follow_targets,
-                        attach::grabs::lead_grabs,
-                        collider::gather_obstacles,
-                        wind::gather_winds,
-                    )
-                        .chain()
-                        .in_set(ClothSystems::Gather),
-                    (
-                        changes::find_changes,
-                        simulate::budget::divide_budget,
-                        simulate::step_cloths,
-                        changes::forget_changes,
-                    )
-                        .chain()
-                        .in_set(ClothSystems::Simulate),
-                    simulate::report_steps.in_set(ClothSystems::Finalize),
-                ),
+                (frame::begin_fixed_step, frame::forget_teleports)
+                    .chain()
+                    .in_set(ClothSystems::Gather)
+                    .before(cloth::update::update_settings),
+            )
+            .add_systems(
+                PostUpdate,
+                (frame::begin_late_step, run_late_pass.run_if(cloth::timing::any_is_late))
+                    .chain()
+                    .in_set(ClothSystems::Late),
             )
             .add_systems(
                 PostUpdate,
@@ -174,11 +177,20 @@ impl Plugin for ClothPlugin {
         #[cfg(feature = "mesh_colliders")]
         app.init_resource::<collider::mesh::PreparedMeshes>().add_systems(
             self.schedule,
-            collider::mesh::prepare_meshes
+            collider::mesh::drop_changed_meshes
                 .in_set(ClothSystems::Gather)
                 .after(frame::forget_teleports)
-                .before(collider::gather_obstacles),
+                .before(collider::mesh::prepare_meshes),
         );
+        add_pass(app, self.schedule);
+        // A schedule of its own: the plugin's may be the one that it runs in.
+        app.edit_schedule(LatePass, |schedule| {
+            // One after the other anyway; what takes long is done side by side within.
+            schedule
+                .set_executor(SingleThreadedExecutor::new())
+                .configure_sets((ClothSystems::Gather, ClothSystems::Simulate, ClothSystems::Finalize).chain());
+        });
+        add_pass(app, LatePass);
     }
 
     /// Does what needs a plugin that has come later, and says what is missing.
@@ -195,6 +207,54 @@ impl Plugin for ClothPlugin {
             warn!("ClothPlugin can't do its work: it needs {}; add them to the app", missing.join(", "));
         }
     }
+}
+
+/// The schedule of the late pass, which runs once a frame in [`ClothSystems::Late`].
+#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct LatePass;
+
+/// Adds the systems of a pass to its schedule. Each of them works on the cloths of the pass that has begun, and remembers what it
+/// has to for each pass.
+fn add_pass(app: &mut App, schedule: impl ScheduleLabel + Clone) {
+    app.add_systems(
+        schedule.clone(),
+        (
+            (
+                cloth::update::update_settings,
+                attach::pins::update_pins,
+                attach::pins::advance_builds,
+                attach::pins::follow_targets,
+                attach::grabs::lead_grabs,
+                collider::gather_obstacles,
+                wind::gather_winds,
+            )
+                .chain()
+                .in_set(ClothSystems::Gather),
+            (changes::find_changes, simulate::budget::divide_budget, simulate::step_cloths, changes::forget_changes)
+                .chain()
+                .in_set(ClothSystems::Simulate),
+            simulate::report_steps.in_set(ClothSystems::Finalize),
+        ),
+    );
+    #[cfg(feature = "mesh_colliders")]
+    app.add_systems(
+        schedule,
+        collider::mesh::prepare_meshes
+            .in_set(ClothSystems::Gather)
+            .after(frame::forget_teleports)
+            .before(collider::gather_obstacles),
+    );
+}
+
+/// Steps all cloths that step late.
+fn run_late_pass(world: &mut World) {
+    // It is there, and a system may not fail the app where somebody has taken it out.
+    let _ = world.try_run_schedule(LatePass);
+}
+
+/// While time stands still, no cloth steps, and what is remembered of the latest step stays true.
+fn time_goes_on(time: Option<Res<Time>>) -> bool {
+    time.is_some_and(|time| time.delta_secs() > 0.0)
 }
 
 /// Without time or meshes there is nothing to do, and no system may ask for them.

@@ -16,7 +16,7 @@ mod sleep;
 
 use crate::{
     cloth::{ClothSolver, InForce},
-    frame::{self, ClothRun, StepNumber},
+    frame::{self, ClothRun, Steps},
     solver::{self, Member, Particles, Scratch, StepContext, StepReach, StepReport, Topology},
     state::{
         BodyPush, ClothFellAsleep, ClothReport, ClothReset, ClothState, ClothStatus, ClothWokeUp, ResetCause, Sleep,
@@ -55,12 +55,12 @@ pub(crate) struct Surroundings<'w> {
     winds: Res<'w, Winds>,
 }
 
-/// Steps all cloths, several at a time: each reads what is shared and writes only itself, so the order doesn't matter. Those
+/// Steps all cloths of a pass, several at a time: each reads what is shared and writes only itself, so the order doesn't matter. Those
 /// that may touch each other are stepped together.
 pub(crate) fn step_cloths(
     mut cloths: Query<Stepped>,
     run: Res<ClothRun>,
-    (time, step): (Res<Time>, Res<StepNumber>),
+    (time, steps): (Res<Time>, Res<Steps>),
     surroundings: Surroundings,
     mut duration: ResMut<StepDuration>,
     scratch_pool: Local<ScratchPool>,
@@ -73,8 +73,9 @@ pub(crate) fn step_cloths(
         warn_once!("ClothGravity isn't finite: cloth has no gravity until it is; set it to a finite acceleration");
         Vec3::ZERO
     };
-    let mut running: Vec<_> = cloths.iter_mut().filter(|cloth| cloth.status.is_running()).collect();
-    running.iter_mut().for_each(|cloth| cloth.sleep.begin_step(*step));
+    let is_stepped = |cloth: &meeting::SteppedItem| cloth.status.is_running() && cloth.input.pass == steps.pass();
+    let mut running: Vec<_> = cloths.iter_mut().filter(is_stepped).collect();
+    running.iter_mut().for_each(|cloth| cloth.sleep.begin_step(steps.present()));
     let (dt, pool) = (time.delta_secs(), frame::pool(run.parallel));
     let mut groups = meeting::group(running, dt);
     groups.retain_mut(|group| dt <= 0.0 || !sleep::sleep_on(group, &surroundings));
@@ -82,7 +83,7 @@ pub(crate) fn step_cloths(
     frame::for_each(groups, run.parallel, |mut group| {
         step_group(&mut group, dt, gravity, &surroundings, pool, &scratch_pool);
     });
-    duration.0 = begun.elapsed().as_secs_f32();
+    duration.0[steps.pass()] = begun.elapsed().as_secs_f32();
 }
 
 /// Steps cloths that may touch each other by `dt` seconds.
@@ -216,9 +217,13 @@ fn end_step(state: &mut ClothState, report: &mut ClothReport, input: &mut StepIn
 /// Tells of what went wrong in a step, and of cloth that fell asleep or woke up.
 pub(crate) fn report_steps(
     mut commands: Commands,
-    mut cloths: Query<(Entity, &ClothStatus, &ClothReport, &InForce, &mut Warned, &mut Sleep)>,
+    mut cloths: Query<(Entity, &ClothStatus, &ClothReport, &InForce, &StepInput, &mut Warned, &mut Sleep)>,
+    steps: Res<Steps>,
 ) {
-    for (entity, status, report, in_force, mut warned, mut sleep) in &mut cloths {
+    for (entity, status, report, in_force, input, mut warned, mut sleep) in &mut cloths {
+        if input.pass != steps.pass() {
+            continue;
+        }
         let is_asleep = *status == ClothStatus::Asleep;
         if is_asleep != sleep.is_told {
             sleep.is_told = is_asleep;

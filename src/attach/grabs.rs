@@ -6,6 +6,7 @@ use bevy::{math::Vec3A, prelude::*};
 
 use crate::{
     cloth::InForce,
+    frame::Steps,
     solver::Grab,
     state::{ClothGrabbed, ClothGrabs, ClothReleased, ClothState, ClothStatus, HeldGrab, StepInput},
 };
@@ -13,10 +14,10 @@ use crate::{
 /// Plans the way of every grabbed point over the coming step.
 pub(crate) fn lead_grabs(
     mut cloths: Query<(&ClothState, &ClothStatus, &InForce, &mut ClothGrabs, &mut StepInput)>,
-    time: Res<Time>,
+    (time, steps): (Res<Time>, Res<Steps>),
 ) {
     for (state, status, in_force, mut grabs, mut input) in &mut cloths {
-        if !status.is_running() || grabs.is_empty() && input.grabs.is_empty() {
+        if !status.is_running() || input.pass != steps.pass() || grabs.is_empty() && input.grabs.is_empty() {
             continue;
         }
         let has_tethers = in_force.settings.tether_slack.is_some();

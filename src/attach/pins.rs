@@ -7,7 +7,7 @@ use bevy::{
 
 use crate::{
     draw::ClothMesh,
-    frame::{Jump, Poses, Skeletons},
+    frame::{Jump, Poses, Skeletons, Steps},
     pins::{PinTarget, Pins, targets_by_particle},
     skin::{ClothSkin, ClothTeleport, TeleportMode, teleport::put_at_rest},
     solver::{PinMotion, build::blend::BlendWeightBuild},
@@ -36,7 +36,7 @@ pub(crate) fn update_pins(
 ) {
     for (entity, (pins, skin), (mesh, status), mut state, mut attachments, mut input, mut skinning) in &mut cloths {
         let Some(source) = meshes.get(&mesh.source) else { continue };
-        if !status.is_running() {
+        if !status.is_running() || input.pass != poses.pass() {
             continue;
         }
         let (mut targets, refused) = targets_by_particle(pins, source, &state.particle_of_vertex, &state.topology);
@@ -111,10 +111,13 @@ const DISTANCES_A_STEP: usize = 12_000;
 
 /// Works on what pins have asked for: tethers, by whose old ones a large cloth hangs meanwhile, and weights of the anchors
 /// that it is drawn with.
-pub(crate) fn advance_builds(mut cloths: Query<(&mut ClothState, &mut ClothAttachments, &ClothStatus)>) {
-    for (mut state, mut attachments, status) in &mut cloths {
+pub(crate) fn advance_builds(
+    mut cloths: Query<(&mut ClothState, &mut ClothAttachments, &ClothStatus, &StepInput)>,
+    steps: Res<Steps>,
+) {
+    for (mut state, mut attachments, status, input) in &mut cloths {
         let is_idle = attachments.tether_build.is_none() && attachments.blend_build.is_none();
-        if !status.is_running() || is_idle {
+        if !status.is_running() || is_idle || input.pass != steps.pass() {
             continue;
         }
         if let Some(mut build) = attachments.blend_build.take() {
@@ -163,7 +166,7 @@ pub(crate) fn follow_targets(
         (mut skinning, teleport, mut warned),
     ) in &mut cloths
     {
-        if !status.is_running() {
+        if !status.is_running() || input.pass != poses.pass() {
             continue;
         }
         let (state, attachments, grabs) = (&mut *state, &mut *attachments, grabs.bypass_change_detection());

@@ -5,7 +5,8 @@ use bevy::prelude::*;
 use super::{Cloth, InForce, margin, resolution};
 use crate::{
     fabric::{ClothSprings, Fabric},
-    state::{ClothAttachments, ClothState, ClothStatus, Warned},
+    frame::Steps,
+    state::{ClothAttachments, ClothState, ClothStatus, StepInput, Warned},
 };
 
 /// Reads changed [`Cloth`], [`Fabric`] and [`ClothSprings`] components. Refusals are told once, until all is valid again: a
@@ -15,15 +16,17 @@ pub(crate) fn update_settings(
         (
             Entity,
             (&Cloth, &Fabric, Option<&ClothSprings>),
-            (&ClothStatus, &ClothAttachments),
+            (&ClothStatus, &ClothAttachments, &StepInput),
             (&mut ClothState, &mut InForce, &mut Warned),
         ),
         Or<(Changed<Cloth>, Changed<Fabric>, Changed<ClothSprings>)>,
     >,
+    steps: Res<Steps>,
 ) {
-    for (entity, (cloth, fabric, springs), (status, attachments), (mut state, mut in_force, mut warned)) in &mut cloths
+    for (entity, (cloth, fabric, springs), (status, attachments, input), (mut state, mut in_force, mut warned)) in
+        &mut cloths
     {
-        if !status.is_running() {
+        if !status.is_running() || input.pass != steps.pass() {
             continue;
         }
         let material = fabric.material_with(springs).map(|material| {

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 
 use crate::{
-    frame::{StepNumber, Teleported},
+    frame::{Steps, Teleported},
     state::Requests,
 };
 
@@ -18,7 +18,7 @@ pub(super) enum Along {
 
 /// Has an entity, and all below it, come from nowhere in the next step.
 pub(super) fn teleport(world: &mut World, root: Entity, along: Along) {
-    let Some(&step) = world.get_resource::<StepNumber>() else { return };
+    let Some(step) = world.get_resource::<Steps>().map(Steps::present) else { return };
     let mut left = vec![root];
     while let Some(entity) = left.pop() {
         left.extend(world.get::<Children>(entity).into_iter().flat_map(|children| children.iter()));

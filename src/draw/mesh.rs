@@ -13,7 +13,7 @@ use super::{Binding, bind_space::BindSpace, carry::Carry, shading};
 use crate::{
     frame::{self, ClothClock, is_invertible},
     solver::build::weld::NO_PARTICLE,
-    state::{BoundSkin, ClothAttachments, ClothState, Requests, Skinning},
+    state::{BoundSkin, ClothAttachments, ClothState, Requests, Skinning, StepInput},
 };
 
 /// The meshes of a cloth: the one that it was made from, and its own copy, which is drawn.
@@ -54,16 +54,25 @@ pub(crate) struct Drawn {
 
 /// Computes what every cloth looks like at the moment that is drawn.
 pub(crate) fn shape_cloths(
-    mut cloths: Query<(&ClothState, &ClothAttachments, &Skinning, &Requests, &GlobalTransform, &mut ClothMesh)>,
+    mut cloths: Query<(
+        &ClothState,
+        &ClothAttachments,
+        &Skinning,
+        &Requests,
+        &StepInput,
+        &GlobalTransform,
+        &mut ClothMesh,
+    )>,
     poses: Query<&GlobalTransform>,
     clock: ClothClock,
     _main_thread: NonSendMarker,
 ) {
-    let now = clock.overstep();
+    let clock = &clock;
     frame::for_each(
         cloths.iter_mut(),
         clock.parallel(),
-        |(state, attachments, skinning, requests, transform, mut mesh)| {
+        |(state, attachments, skinning, requests, input, transform, mut mesh)| {
+            let now = clock.overstep(input.pass);
             let ClothMesh { binding, shape, .. } = &mut *mesh;
             let parts = (state, attachments, skinning.0.as_deref(), requests);
             shape.update(parts, binding, transform.affine(), &poses, now);

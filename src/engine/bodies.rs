@@ -141,7 +141,7 @@ mod tests {
     }
 
     fn begin(bodies: &mut Bodies, teleported: &Teleported) {
-        let number = bodies.step.number.later(1);
+        let number = bodies.step.number.next();
         bodies.begin(Step { number, dt: 0.1, ..default() }, teleported);
     }
 

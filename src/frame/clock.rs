@@ -1,6 +1,8 @@
-//! When cloth steps, and how far the drawn moment lies within the latest step.
+//! How far the drawn moment lies within the latest step.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
+
+use super::Pass;
 
 /// How the plugin was set up.
 #[derive(Resource, Clone, Copy, Debug)]
@@ -17,80 +19,22 @@ pub(crate) struct ClothClock<'w> {
 }
 
 impl ClothClock<'_> {
-    /// Share of the latest step that has passed, 0..=1.
-    pub fn overstep(&self) -> f32 {
+    /// Share of the latest step that has passed, 0..=1, for a cloth that steps in `pass`. A late step ends at the moment that
+    /// is drawn.
+    pub fn overstep(&self, pass: Pass) -> f32 {
         match &self.fixed {
-            Some(time) if self.run.fixed => time.overstep_fraction().clamp(0.0, 1.0),
+            Some(time) if self.run.fixed && pass == Pass::Fixed => time.overstep_fraction().clamp(0.0, 1.0),
             _ => 1.0,
         }
+    }
+
+    /// Time since the latest step of the plugin's schedule ended, s: so far a late step is ahead of it.
+    pub fn ahead_of_fixed(&self) -> f32 {
+        self.fixed.as_ref().filter(|_| self.run.fixed).map_or(0.0, |time| time.overstep().as_secs_f32())
     }
 
     /// Whether cloths may be worked on side by side.
     pub fn parallel(&self) -> bool {
         self.run.parallel
-    }
-}
-
-/// Number of the present step, counted from 1.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct StepNumber(u64);
-
-impl StepNumber {
-    /// The number that comes `steps` later.
-    pub fn later(self, steps: u64) -> Self {
-        Self(self.0 + steps)
-    }
-}
-
-/// Begins another step.
-pub(crate) fn count_steps(mut number: ResMut<StepNumber>) {
-    *number = number.later(1);
-}
-
-/// A value that is known from one step to the next, and not longer.
-///
-/// What is disabled or despawned, or has no transform, is seen by no system: when it comes back, what it was before is
-/// out of date.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct FromLatestStep<T> {
-    step: StepNumber,
-    value: Option<T>,
-}
-
-impl<T: Copy> FromLatestStep<T> {
-    /// The value that the step before `step` has left, or that one itself.
-    pub fn get(&self, step: StepNumber) -> Option<T> {
-        self.value.filter(|_| self.step.later(1) >= step)
-    }
-
-    /// Keeps a value of this step.
-    pub fn set(&mut self, step: StepNumber, value: T) {
-        *self = Self { step, value: Some(value) };
-    }
-
-    /// Has no value any more.
-    pub fn forget(&mut self) {
-        self.value = None;
-    }
-
-    /// The value to be changed, out of date or not.
-    pub fn as_mut(&mut self) -> Option<&mut T> {
-        self.value.as_mut()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_value_is_known_in_the_next_step_only() {
-        let first = StepNumber::default().later(1);
-        let mut value = FromLatestStep::default();
-        assert_eq!(value.get(first), None);
-        value.set(first, 7);
-        assert_eq!([0, 1, 2].map(|steps| value.get(first.later(steps))), [Some(7), Some(7), None]);
-        value.forget();
-        assert_eq!(value.get(first.later(1)), None);
     }
 }

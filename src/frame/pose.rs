@@ -2,13 +2,13 @@
 
 use bevy::{ecs::system::SystemParam, math::Affine3A, prelude::*, transform::helper::ComputeGlobalTransformError};
 
-use super::{StepNumber, Teleported};
+use super::{Pass, StepNumber, Steps, Teleported};
 
 /// World poses of entities, up to date within a frame.
 #[derive(SystemParam)]
 pub(crate) struct Poses<'w, 's> {
     transforms: TransformHelper<'w, 's>,
-    step: Res<'w, StepNumber>,
+    steps: Res<'w, Steps>,
     teleported: Res<'w, Teleported>,
 }
 
@@ -24,12 +24,17 @@ impl Poses<'_, '_> {
 
     /// The present step.
     pub fn step(&self) -> StepNumber {
-        *self.step
+        self.steps.present()
     }
 
-    /// Whether an entity has been teleported since the latest step.
+    /// The pass that it is of.
+    pub fn pass(&self) -> Pass {
+        self.steps.pass()
+    }
+
+    /// Whether an entity has been teleported since the latest step of this pass.
     pub fn is_teleported(&self, entity: Entity) -> bool {
-        self.teleported.contains(entity, *self.step)
+        self.teleported.contains(entity, self.step())
     }
 }
 

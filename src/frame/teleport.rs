@@ -7,7 +7,7 @@ use bevy::{
     prelude::*,
 };
 
-use super::{FromLatestStep, StepNumber, is_invertible};
+use super::{FromLatestStep, Pass, PerPass, StepNumber, Steps, is_invertible};
 
 /// From when on a move of an obstacle is taken for a teleport: where it is both farther and faster than this within one
 /// step. It then sweeps nothing on its way.
@@ -38,7 +38,7 @@ impl ColliderTeleportThreshold {
     }
 }
 
-/// What has been put elsewhere, and in which step.
+/// What has been put elsewhere, and since which step. It counts once for each pass.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Teleported(HashMap<Entity, StepNumber, FixedHasher>);
 
@@ -48,33 +48,31 @@ impl Teleported {
         self.0.insert(entity, step);
     }
 
-    /// Whether an entity has been put elsewhere between the step before `step` and that one.
+    /// Whether an entity has been put elsewhere between the step before `step`, of the same pass, and that one.
     pub fn contains(&self, entity: Entity, step: StepNumber) -> bool {
-        self.is_within(entity, step, 1)
+        self.0.get(&entity).is_some_and(|since| since.is_since_step_before(step))
     }
 
     /// Whether an entity has been put elsewhere within the latest two steps: a physics engine may come to know of it a step late.
     #[cfg(any(feature = "avian", feature = "rapier"))]
     pub fn contains_lately(&self, entity: Entity, step: StepNumber) -> bool {
-        self.is_within(entity, step, 2)
-    }
-
-    fn is_within(&self, entity: Entity, step: StepNumber, steps: u64) -> bool {
-        self.0.get(&entity).is_some_and(|since| since.later(steps) >= step)
+        self.0.get(&entity).is_some_and(|since| since.is_since_two_steps_before(step))
     }
 }
 
 /// Forgets teleports that are done.
-pub(crate) fn forget_teleports(mut teleported: ResMut<Teleported>, step: Res<StepNumber>) {
+pub(crate) fn forget_teleports(mut teleported: ResMut<Teleported>, steps: Res<Steps>) {
     if !teleported.0.is_empty() {
-        teleported.0.retain(|_, since| since.later(2) >= *step);
+        let is_known =
+            |since: &StepNumber| Pass::BOTH.iter().any(|&pass| since.is_since_two_steps_before(steps.latest_of(pass)));
+        teleported.0.retain(|_, since| is_known(since));
     }
 }
 
 /// Tells ways from jumps.
 #[derive(SystemParam)]
 pub(crate) struct JumpDetection<'w> {
-    step: Res<'w, StepNumber>,
+    steps: Res<'w, Steps>,
     time: Res<'w, Time>,
     pub teleported: Res<'w, Teleported>,
     pub threshold: Res<'w, ColliderTeleportThreshold>,
@@ -85,6 +83,9 @@ pub(crate) struct JumpDetection<'w> {
 pub(crate) enum PastPose {
     /// There, and it has moved since.
     Known(Isometry3d),
+    /// There in the latest step of the plugin's schedule: it is new to the late pass, and cloth that has stepped there until
+    /// now has met it there.
+    KnownToFixed(Isometry3d),
     /// Nowhere, or it has been teleported since.
     Unknown,
     /// Farther away than any motion goes.
@@ -92,26 +93,42 @@ pub(crate) enum PastPose {
 }
 
 impl JumpDetection<'_> {
-    /// Where an obstacle was that is at `pose` by now, with the pose that is remembered of it.
-    pub fn past_pose(&self, entity: Entity, memory: &FromLatestStep<Isometry3d>, pose: &Isometry3d) -> PastPose {
-        match memory.get(*self.step) {
-            Some(past) if !self.is_teleported(entity) => {
+    /// Where an obstacle was that is at `pose` by now, with the poses that are remembered of it.
+    pub fn past_pose(
+        &self,
+        entity: Entity,
+        memory: &PerPass<FromLatestStep<Isometry3d>>,
+        pose: &Isometry3d,
+    ) -> PastPose {
+        if self.is_teleported(entity) {
+            return PastPose::Unknown;
+        }
+        let own = memory[self.pass()].get(self.step()).map(|past| (past, PastPose::Known(past)));
+        // Never the other way round: what steps in the plugin's schedule doesn't depend on late cloth.
+        let of_fixed = || memory[Pass::Fixed].get_since(self.steps.latest_of(Pass::Fixed));
+        match own.or_else(|| of_fixed().map(|past| (past, PastPose::KnownToFixed(past)))) {
+            Some((past, known)) => {
                 let way = past.translation.distance(pose.translation);
                 let is_jump = self.threshold.is_exceeded(way, self.time.delta_secs());
-                if is_jump { PastPose::TooFar } else { PastPose::Known(past) }
+                if is_jump { PastPose::TooFar } else { known }
             }
-            _ => PastPose::Unknown,
+            None => PastPose::Unknown,
         }
     }
 
     /// Whether an entity has been teleported since the latest step.
     pub fn is_teleported(&self, entity: Entity) -> bool {
-        self.teleported.contains(entity, *self.step)
+        self.teleported.contains(entity, self.step())
     }
 
     /// The present step.
     pub fn step(&self) -> StepNumber {
-        *self.step
+        self.steps.present()
+    }
+
+    /// The pass that it is of.
+    pub fn pass(&self) -> Pass {
+        self.steps.pass()
     }
 
     /// Duration of the present step, s.

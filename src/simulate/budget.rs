@@ -4,13 +4,19 @@ use core::cmp::Ordering;
 
 use bevy::prelude::*;
 
-use crate::state::{Allowance, ClothReport, ClothState, ClothStatus, StepInput};
+use crate::{
+    frame::{PerPass, Steps},
+    state::{Allowance, ClothReport, ClothState, ClothStatus, StepInput},
+};
 
 /// The time that all cloth together may take in a step, by the clock, in ms. Infinite by default: nothing is cut.
 ///
 /// Where cloths would take longer, they get fewer substeps, down to a quarter of what they ask for: the one farthest from all
 /// active cameras first, and the nearest last. What is cut stretches more, and lets small obstacles through sooner.
 /// [`ClothReport::latest`] and the panel tell of it. A quarter of all may still be more than the budget: then cloth takes that.
+///
+/// It counts for each step of the plugin's schedule, and apart from that for the cloths that step
+/// [late](crate::prelude::ClothTiming::Late): a frame may take it several times.
 ///
 /// It follows the clock, so two runs aren't the same: leave it off where they have to be, and set
 /// [`Cloth::max_work`](crate::prelude::Cloth::max_work) instead. [`ClothSolver::Explicit`](crate::prelude::ClothSolver::Explicit) is
@@ -44,9 +50,9 @@ impl ClothBudget {
 /// The fewest substeps that are left to a cloth, as a share of what it asks for: below that, cloth looks like rubber.
 const LEAST: f32 = 0.25;
 
-/// The time that the latest step of all cloths has taken by the clock, s.
+/// The time that the latest step of all cloths of each pass has taken by the clock, s.
 #[derive(Resource, Clone, Copy, Debug, Default)]
-pub(crate) struct StepDuration(pub f32);
+pub(crate) struct StepDuration(pub PerPass<f32>);
 
 /// What a cloth asks for.
 #[derive(Clone, Copy, Debug)]
@@ -63,10 +69,10 @@ impl Demand {
     }
 }
 
-/// Sets how many substeps each cloth may take in the coming step.
+/// Sets how many substeps each cloth of the present pass may take in the coming step.
 pub(crate) fn divide_budget(
     budget: Res<ClothBudget>,
-    latest: Res<StepDuration>,
+    (latest, steps): (Res<StepDuration>, Res<Steps>),
     cameras: Query<(&Camera, &GlobalTransform)>,
     mut cloths: Query<(Entity, &ClothStatus, &ClothState, &ClothReport, &mut StepInput)>,
     mut was_on: Local<bool>,
@@ -80,7 +86,10 @@ pub(crate) fn divide_budget(
     *was_on = true;
     let eyes: Vec<Vec3> =
         cameras.iter().filter(|(camera, _)| camera.is_active).map(|(_, at)| at.translation()).collect();
-    let mut all: Vec<_> = cloths.iter_mut().filter(|(_, status, ..)| **status == ClothStatus::Ready).collect();
+    let mut all: Vec<_> = cloths
+        .iter_mut()
+        .filter(|(_, status, .., input)| **status == ClothStatus::Ready && input.pass == steps.pass())
+        .collect();
     all.sort_unstable_by_key(|(entity, ..)| *entity);
     let mut worked = 0.0;
     let demands: Vec<Demand> = all
@@ -94,7 +103,8 @@ pub(crate) fn divide_budget(
         })
         .collect();
     // Cloths are stepped side by side: together they may work for longer than the clock runs.
-    let workers = if latest.0 > 0.0 { (worked / latest.0).max(1.0) } else { 1.0 };
+    let latest = latest.0[steps.pass()];
+    let workers = if latest > 0.0 { (worked / latest).max(1.0) } else { 1.0 };
     for ((.., input), substeps) in all.iter_mut().zip(divide(&demands, seconds * workers)) {
         input.allowance.allow(substeps);
     }

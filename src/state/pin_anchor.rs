@@ -44,7 +44,7 @@ impl PinAnchor {
     /// Follows the target over the coming step. One that has been teleported, or was gone in the latest step, has jumped.
     pub fn follow(&mut self, cloth: Entity, poses: &Poses) {
         let (pose, step) = (target_pose(self.target, cloth, poses), poses.step());
-        let was_there = self.seen.is_some_and(|seen| seen.later(1) >= step);
+        let was_there = self.seen.is_some_and(|seen| seen.is_since_step_before(step));
         let is_put = !was_there || self.entity.is_some_and(|entity| poses.is_teleported(entity));
         self.is_there = pose.is_some();
         self.jumped_from = pose.and(self.seen).filter(|_| is_put).map(|_| self.end);
@@ -52,6 +52,13 @@ impl PinAnchor {
         self.start = if is_put { end } else { self.end };
         self.end = end;
         self.seen = pose.map(|_| step).or(self.seen);
+    }
+
+    /// The cloth steps in another pass from now on, whose latest step may be older than this one's: with the anchor still in
+    /// sight where it was in the `latest` step of the old one, `now` it is as if it had been seen just before.
+    pub fn change_pass(&mut self, latest: StepNumber, now: StepNumber) {
+        self.seen = self.seen.map(|seen| if seen.is_since(latest) { now } else { seen });
+        self.start = self.end;
     }
 
     /// The cloth has jumped by itself: nothing has a way that it would be pulled along.

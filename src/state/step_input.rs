@@ -4,7 +4,7 @@ use bevy::prelude::*;
 
 use super::Allowance;
 use crate::{
-    frame::Jump,
+    frame::{Jump, Pass},
     solver::{AttachedPin, BodyAttachment, BodyDisplacement, BodyImpulse, Grab, Obstacle, PinMotion, WindSource},
 };
 
@@ -12,6 +12,8 @@ use crate::{
 #[derive(Component, Clone, Debug, Default)]
 #[component(clone_behavior = Ignore)]
 pub(crate) struct StepInput {
+    /// In which pass of a frame the cloth steps.
+    pub pass: Pass,
     pub pin_motions: Vec<PinMotion>,
     pub grabs: Vec<Grab>,
     pub obstacles: Vec<Obstacle>,

@@ -6,7 +6,7 @@ use bevy::{
 };
 
 use crate::{
-    frame::{FromLatestStep, Jump, JumpDetection, PastPose, Poses},
+    frame::{FromLatestStep, Jump, JumpDetection, Pass, PastPose, PerPass, Poses},
     solver::{Body, CollisionFilter, Obstacle, Shape, Solid, StepReach},
 };
 use error::ColliderError;
@@ -22,7 +22,8 @@ mod solid;
 /// An obstacle for cloth, moved by its `Transform`.
 ///
 /// Move it in `FixedUpdate` or any schedule that runs once a step: its way since the latest step is what pushes the
-/// cloth, and one that moves once a frame comes in jolts where a frame has several steps or none. It jumps without sweeping
+/// cloth, and one that moves once a frame comes in jolts where a frame has several steps or none. For cloth that steps
+/// [late](crate::prelude::ClothTiming::Late) it may move once a frame, before transforms are propagated. It jumps without sweeping
 /// what is between by [`teleport_collider`](crate::prelude::ClothCommands::teleport_collider); beyond the
 /// [`ColliderTeleportThreshold`](crate::prelude::ColliderTeleportThreshold), by itself. While it is `Disabled` it is no
 /// obstacle, and comes out of nowhere afterwards.
@@ -137,8 +138,8 @@ impl ClothCollider {
 #[derive(Component, Clone, Debug, Default)]
 #[component(clone_behavior = Ignore)]
 pub(crate) struct ColliderMemory {
-    /// World pose at the end of the latest step.
-    pose: FromLatestStep<Isometry3d>,
+    /// World pose at the end of the latest step of each pass.
+    pose: PerPass<FromLatestStep<Isometry3d>>,
     /// A message has told that it jumped.
     told_of_jump: bool,
     /// Why the collider was left out, of which a warning has told.
@@ -158,11 +159,37 @@ pub(crate) fn on_collider_removed(removed: On<Remove, ClothCollider>, mut comman
 /// All obstacles of the latest step, in world space: what cloth has met, whatever it came from. To look at only.
 #[derive(Resource, Debug, Default)]
 pub struct Obstacles {
-    /// With their entity and layers, in the order of their entities.
+    /// With their entity and layers: colliders of this crate's own in the order of their entities, and then those of engines.
     pub(crate) list: Vec<(Entity, u32, Obstacle)>,
+    /// How many of them are of this crate's own.
+    own: usize,
 }
 
 impl Obstacles {
+    /// Begins to gather for a step of a pass, and hands out the obstacles of engines that count in it.
+    ///
+    /// Engines tell of their colliders in the plugin's schedule only: for cloth that steps late they stand where they were then,
+    /// and can't be pushed.
+    fn begin(&mut self, pass: Pass) -> Vec<(Entity, u32, Obstacle)> {
+        let mut of_engines = Vec::new();
+        if pass == Pass::Late {
+            of_engines = self.list.split_off(self.own);
+            for (_, _, obstacle) in &mut of_engines {
+                (obstacle.start, obstacle.body) = (obstacle.end, None);
+            }
+        }
+        self.list.clear();
+        of_engines
+    }
+
+    /// Takes those `of_engines` behind what has been gathered.
+    fn end(&mut self, of_engines: Vec<(Entity, u32, Obstacle)>) {
+        // Contact comes out the same whatever order the world keeps its entities in.
+        self.list.sort_unstable_by_key(|&(entity, ..)| entity);
+        self.own = self.list.len();
+        self.list.extend(of_engines);
+    }
+
     /// The world has been shifted, and all of them with it.
     pub(crate) fn shift(&mut self, by: Vec3) {
         self.list.iter_mut().for_each(|(_, _, obstacle)| obstacle.shift(by.into()));
@@ -204,14 +231,14 @@ impl Obstacles {
     }
 }
 
-/// Reads all colliders and how they have moved since the latest step.
+/// Reads all colliders and how they have moved since the latest step of this pass.
 pub(crate) fn gather_obstacles(
     mut colliders: Query<(Entity, &ClothCollider, &mut ColliderMemory)>,
     mut obstacles: ResMut<Obstacles>,
     poses: Poses,
     jumps: JumpDetection,
 ) {
-    obstacles.list.clear();
+    let of_engines = obstacles.begin(jumps.pass());
     for (entity, collider, mut memory) in &mut colliders {
         let pose = || poses.compute_global_transform(entity).map(|pose| pose.affine()).ok();
         match memory.placed(collider, pose) {
@@ -223,9 +250,9 @@ pub(crate) fn gather_obstacles(
                 let obstacle = Obstacle { shape, start, end, rounding: 0.0, friction, body: None };
                 obstacles.list.push((entity, collider.layers, obstacle));
             }
-            Ok(None) => memory.pose.forget(),
+            Ok(None) => memory.pose[jumps.pass()].forget(),
             Err(error) => {
-                memory.pose.forget();
+                memory.pose[jumps.pass()].forget();
                 if memory.said.as_ref() != Some(&error) {
                     warn!("collider {entity} is left out: {error}");
                     memory.said = Some(error);
@@ -233,29 +260,28 @@ pub(crate) fn gather_obstacles(
             }
         }
     }
-    // Contact comes out the same whatever order the world keeps its entities in.
-    obstacles.list.sort_unstable_by_key(|&(entity, ..)| entity);
+    obstacles.end(of_engines);
 }
 
 impl ColliderMemory {
     /// Remembers a pose, and returns the one before it. What has jumped comes from where it is.
     fn come_to(&mut self, entity: Entity, pose: Isometry3d, jumps: &JumpDetection) -> Isometry3d {
         let past = jumps.past_pose(entity, &self.pose, &pose);
-        self.pose.set(jumps.step(), pose);
+        self.pose[jumps.pass()].set(jumps.step(), pose);
         if past == PastPose::TooFar && !core::mem::replace(&mut self.told_of_jump, true) {
             debug!(
                 "collider {entity} has moved so far within a step that it is taken for a teleport: ask for                  teleport_collider, or raise ColliderTeleportThreshold if it is that fast"
             );
         }
         match past {
-            PastPose::Known(past) => past,
+            PastPose::Known(past) | PastPose::KnownToFixed(past) => past,
             PastPose::Unknown | PastPose::TooFar => pose,
         }
     }
 
     /// The world has been shifted, and the collider with it.
     pub fn shift(&mut self, by: Vec3) {
-        if let Some(pose) = self.pose.as_mut() {
+        for pose in self.pose.iter_mut().filter_map(FromLatestStep::as_mut) {
             pose.translation += Vec3A::from(by);
         }
     }

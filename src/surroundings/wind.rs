@@ -6,7 +6,7 @@ use bevy::{
 };
 
 use crate::{
-    frame::Poses,
+    frame::{ClothClock, Pass, Poses},
     parameter::{Parameter, check_parameters},
     solver::{Ellipsoid, Gusts, StepReach, WindRegion, WindSource},
 };
@@ -180,13 +180,16 @@ impl Winds {
     }
 }
 
-/// Reads all winds.
+/// Reads all winds. Their air goes on with the plugin's schedule, and only with that: for cloth that steps late it has come by so
+/// much farther as that step is ahead.
 pub(crate) fn gather_winds(
     mut sources: Query<(Entity, &Wind, &mut WindMemory)>,
     mut winds: ResMut<Winds>,
     poses: Poses,
-    time: Res<Time>,
+    (time, clock): (Res<Time>, ClothClock),
 ) {
+    let is_late = poses.pass() == Pass::Late;
+    let passed = if is_late { clock.ahead_of_fixed() } else { time.delta_secs() };
     winds.list.clear();
     for (entity, wind, mut memory) in &mut sources {
         let pose = poses.compute_global_transform(entity).map_err(|error| error.to_string());
@@ -200,9 +203,11 @@ pub(crate) fn gather_winds(
         if let Ok(wind) = placed {
             let WindMemory { travelled, gusts_passed, .. } = *memory;
             let mut wind = WindSource { travelled, gusts_passed, ..wind };
-            wind.advance(time.delta_secs());
-            memory.travelled = wind.travelled;
-            memory.gusts_passed = wind.gusts_passed;
+            wind.advance(passed);
+            if !is_late {
+                memory.travelled = wind.travelled;
+                memory.gusts_passed = wind.gusts_passed;
+            }
             winds.list.push((entity, wind));
         }
     }

@@ -33,6 +33,7 @@ mod grabs;
 mod gravity;
 mod jerks;
 mod large_meshes;
+mod late;
 mod late_mesh;
 mod mannequin;
 #[cfg(feature = "mesh_colliders")]

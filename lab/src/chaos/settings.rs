@@ -15,6 +15,7 @@ pub fn cloth(dice: &mut Dice) -> Cloth {
     let gravity_scale = dice.one_of([1.0, 1.0, 1.0, 0.0, -1.0, 0.2, 3.0]);
     Cloth {
         solver,
+        timing: ClothTiming::default(),
         max_strain: dice.setting(0.001, 0.1),
         substeps: substeps(dice),
         levels: dice.chance(0.2).then(|| levels(dice)),

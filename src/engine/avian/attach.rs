@@ -6,6 +6,7 @@ use bevy::prelude::*;
 use super::gather::body_pose;
 use crate::{
     engine::{self, Bridge},
+    frame::Pass,
     state::{ClothAttachments, ClothState, ClothStatus, StepInput},
 };
 
@@ -22,7 +23,8 @@ pub(super) fn attach_pins(
         Some((body.entity, body_pose(&body)))
     };
     for (cloth, status, state, attachments, mut input) in &mut cloths {
-        if status.is_running() {
+        // Late cloth follows bodies as any other entity.
+        if status.is_running() && input.pass == Pass::Fixed {
             engine::attach_pins(cloth, (state, attachments, &mut input), &mut bridge.bodies, of);
         }
     }

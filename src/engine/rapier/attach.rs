@@ -10,6 +10,7 @@ use bevy_rapier3d::{
 use super::gather::body_pose;
 use crate::{
     engine::{self, Bridge},
+    frame::Pass,
     state::{ClothAttachments, ClothState, ClothStatus, StepInput},
 };
 
@@ -28,7 +29,8 @@ pub(super) fn attach_pins(
         body.is_enabled().then(|| (entity, body_pose(body)))
     };
     for (cloth, status, state, attachments, mut input) in &mut cloths {
-        if status.is_running() {
+        // Late cloth follows bodies as any other entity.
+        if status.is_running() && input.pass == Pass::Fixed {
             engine::attach_pins(cloth, (state, attachments, &mut input), &mut bridge.bodies, of);
         }
     }

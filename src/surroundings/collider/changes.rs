@@ -6,13 +6,16 @@ use bevy::{
 };
 
 use super::Obstacles;
-use crate::solver::{CollisionFilter, Obstacle, StepReach};
+use crate::{
+    frame::{Pass, PerPass, Steps},
+    solver::{CollisionFilter, Obstacle, StepReach},
+};
 
-/// Obstacles that have moved, changed, come or gone since the step before.
+/// Obstacles that have moved, changed, come or gone since the step before, of the present pass.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct ObstacleChanges {
-    /// All obstacles in the step before, in the order of their entities.
-    known: Vec<(Entity, u32, Obstacle)>,
+    /// All obstacles in the step before of each pass, in the order of their entities.
+    known: PerPass<Vec<(Entity, u32, Obstacle)>>,
     /// Those that have changed with their layers: as they are, and as they were.
     changed: Vec<(u32, Obstacle)>,
 }
@@ -29,14 +32,15 @@ impl ObstacleChanges {
 
     /// The world has been shifted, and all of them with it.
     pub fn shift(&mut self, by: Vec3) {
-        self.known.iter_mut().for_each(|(_, _, obstacle)| obstacle.shift(by.into()));
+        self.known.iter_mut().flatten().for_each(|(_, _, obstacle)| obstacle.shift(by.into()));
     }
 
-    /// Compares with the obstacles of the coming step. Both come in the order of their entities, but for those of engines, which stand
+    /// Compares with the obstacles of the coming step of a pass. Both come in the order of their entities, but for those of engines, which stand
     /// behind the others: where one comes or goes, some of these may be told too.
-    fn follow(&mut self, now: &[(Entity, u32, Obstacle)]) {
+    fn follow(&mut self, pass: Pass, now: &[(Entity, u32, Obstacle)]) {
         self.changed.clear();
-        let (mut old, mut new) = (self.known.iter().peekable(), now.iter().peekable());
+        let known = &mut self.known[pass];
+        let (mut old, mut new) = (known.iter().peekable(), now.iter().peekable());
         loop {
             // Whether the next one was there in the step before, and is still.
             let (was, is) = match (old.peek(), new.peek()) {
@@ -55,8 +59,8 @@ impl ObstacleChanges {
             }
         }
         if !self.changed.is_empty() {
-            self.known.clear();
-            self.known.extend_from_slice(now);
+            known.clear();
+            known.extend_from_slice(now);
         }
     }
 }
@@ -68,9 +72,13 @@ pub(crate) fn forget_changes(mut changes: ResMut<ObstacleChanges>) {
 }
 
 /// Finds which obstacles have changed since the step before, in a step in which time goes on.
-pub(crate) fn find_changes(obstacles: Res<Obstacles>, mut changes: ResMut<ObstacleChanges>, time: Res<Time>) {
+pub(crate) fn find_changes(
+    obstacles: Res<Obstacles>,
+    mut changes: ResMut<ObstacleChanges>,
+    (time, steps): (Res<Time>, Res<Steps>),
+) {
     if time.delta_secs() > 0.0 {
-        changes.follow(&obstacles.list);
+        changes.follow(steps.pass(), &obstacles.list);
     }
 }
 
@@ -87,7 +95,7 @@ mod tests {
     fn places(changes: &mut ObstacleChanges, now: &[(Entity, u32, Obstacle)]) -> Vec<f32> {
         let mut now = now.to_vec();
         now.sort_unstable_by_key(|&(entity, ..)| entity);
-        changes.follow(&now);
+        changes.follow(Pass::Fixed, &now);
         let mut places: Vec<f32> = changes.changed.iter().map(|(_, obstacle)| obstacle.end.translation.x).collect();
         places.sort_unstable_by(f32::total_cmp);
         places

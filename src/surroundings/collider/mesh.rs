@@ -13,7 +13,7 @@ use crate::{
     cloth::Cloth,
     draw::TakenOff,
     error::ClothError,
-    frame::{JumpDetection, PastPose},
+    frame::{JumpDetection, Pass, PastPose, PerPass},
     mesh_input,
     solver::{MeshShape, Shape},
 };
@@ -52,15 +52,15 @@ pub(crate) struct Triangles {
     in_force: Option<(Recipe, Prepared)>,
     /// The height field that it was when it was last looked at.
     field: Option<Source>,
-    /// Where a skeleton has put its points.
-    posed: Posed,
+    /// Where a skeleton has put its points, in each pass.
+    posed: PerPass<Posed>,
     /// What came of all that, for the coming step. None while it is waited for.
     placed: Result<Option<(Shape, Isometry3d)>, ColliderError>,
 }
 
 impl Default for Triangles {
     fn default() -> Self {
-        Self { in_force: None, field: None, posed: Posed::default(), placed: Ok(None) }
+        Self { in_force: None, field: None, posed: PerPass::default(), placed: Ok(None) }
     }
 }
 
@@ -71,14 +71,10 @@ impl Triangles {
     }
 }
 
-/// Finds the triangles of all colliders that have some: makes those that are new or have changed.
-pub(crate) fn prepare_meshes(
-    mut colliders: Query<MeshCollider>,
+/// Drops what has been made of meshes that have changed since. In one of the passes only: each change is told once.
+pub(crate) fn drop_changed_meshes(
     mut mesh_events: MessageReader<AssetEvent<Mesh>>,
     mut prepared: ResMut<PreparedMeshes>,
-    library: Library,
-    jumps: JumpDetection,
-    mut joints: Local<Vec<Affine3A>>,
 ) {
     let changed = mesh_events.read().filter_map(|event| match event {
         AssetEvent::Modified { id } => Some(*id),
@@ -86,6 +82,16 @@ pub(crate) fn prepare_meshes(
     });
     let changed: HashSet<AssetId<Mesh>> = changed.collect();
     prepared.update(|mesh| changed.contains(&mesh));
+}
+
+/// Finds the triangles of all colliders that have some: makes those that are new or have changed.
+pub(crate) fn prepare_meshes(
+    mut colliders: Query<MeshCollider>,
+    mut prepared: ResMut<PreparedMeshes>,
+    library: Library,
+    jumps: JumpDetection,
+    mut joints: Local<Vec<Affine3A>>,
+) {
     for mut collider in &mut colliders {
         let placed = match collider.collider.shape {
             ColliderShape::Solid(_) => Ok(None),
@@ -127,22 +133,25 @@ impl MeshColliderItem<'_, '_> {
         }
         let Some((_, Prepared { mesh, skin })) = &triangles.in_force else { return Ok(None) };
         let skin = skin.as_ref().filter(|_| skeleton.is_some());
-        if skin.is_some() != triangles.posed.is_any() {
-            // A skeleton has come or gone, and with it the frame that the pose is of.
-            pose.forget();
-            triangles.posed = Posed::default();
+        for of in Pass::BOTH {
+            if skin.is_some() != triangles.posed[of].is_any() {
+                // A skeleton has come or gone, and with it the frame that the pose is of.
+                pose[of].forget();
+                triangles.posed[of] = Posed::default();
+            }
         }
-        if let Some(&joint) = skeleton.and_then(|skeleton| skeleton.joints.first())
-            && jumps.is_teleported(joint)
-        {
-            pose.forget();
+        let is_put =
+            skeleton.and_then(|skeleton| skeleton.joints.first()).is_some_and(|&joint| jumps.is_teleported(joint));
+        if is_put {
+            // As if it had been there before.
+            pose[jumps.pass()].set(jumps.step(), end);
         }
-        let is_new = !matches!(jumps.past_pose(self.entity, pose, &end), PastPose::Known(_));
+        let is_new = is_put || !matches!(jumps.past_pose(self.entity, pose, &end), PastPose::Known(_));
         let deformed = match skin {
             Some(skin) if skin.joint_count > joints.len() => {
                 return Err(ColliderError::Skeleton { needed: skin.joint_count, found: joints.len() });
             }
-            Some(skin) => Some(triangles.posed.follow(skin, joints, is_new)?),
+            Some(skin) => Some(triangles.posed[jumps.pass()].follow(skin, joints, is_new)?),
             None => None,
         };
         Ok(Some((Shape::Mesh(MeshShape { mesh: mesh.clone(), deformed }), end)))
