@@ -49,15 +49,16 @@ fn dress(
     for part in children.iter_descendants(ready.entity) {
         let Ok((entity, parent, true)) = parts.get(part) else { continue };
         match names.get(parent.parent()).map_or("", Name::as_str) {
-            "Cape" => drop(commands.entity(entity).insert((
-                Cloth { self_collision: false, ..default() },
-                Fabric::WOOL_FLANNEL,
-                ClothSkin { backstop: Some(0.01), backstop_radius: 0.3, ..default() },
-            ))),
-            "Skirt" => {
-                drop(commands.entity(entity).insert((Cloth::default(), Fabric::COTTON_WOVEN, ClothSkin::default())))
+            "Cape" => {
+                let skin = ClothSkin { backstop: Some(0.01), backstop_radius: 0.3, ..default() };
+                commands.entity(entity).insert((Cloth::default(), Fabric::WOOL_FLANNEL, skin));
             }
-            "CapeFine" => drop(commands.entity(entity).insert(Visibility::Hidden)),
+            "Skirt" => {
+                commands.entity(entity).insert((Cloth::default(), Fabric::COTTON_WOVEN, ClothSkin::default()));
+            }
+            "CapeFine" => {
+                commands.entity(entity).insert(Visibility::Hidden);
+            }
             _ => {}
         }
     }

@@ -55,9 +55,9 @@ impl From<ClothSolver> for Method {
 /// A mesh of up to 10,000 triangles is cloth from the next frame on. A larger one is worked on beside the frames, drawn
 /// as it is, until [`ClothReady`](crate::prelude::ClothReady) is sent; pins, fabric, settings and transform count as they are then.
 ///
-/// Skins and morph targets aren't followed yet. The cloth is simulated and drawn from the mesh's bind pose, at the entity's
-/// own transform, and one warning says so. Meanwhile the entity has neither `SkinnedMesh` nor `MeshMorphWeights`: they come
-/// back when [`Mesh3d`] is set to another mesh.
+/// On a skinned mesh it is worn: it follows the skeleton as its [`Pins`] and [`ClothSkin`](crate::prelude::ClothSkin) say. Morph
+/// targets aren't followed: meanwhile the entity has no `MeshMorphWeights`, and one warning says so; they come back when [`Mesh3d`] is
+/// set to another mesh.
 ///
 /// Add, change or remove it at any time. Removing it leaves the mesh as it is drawn at that moment.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]

@@ -143,11 +143,26 @@
 //!
 //! # Characters
 //!
-//! Skinned cloth with maximum distances from the animation is to come. Today a cape or skirt can be pinned to bones, as
-//! to any entity, and collide with its wearer: a `ClothCollider::mesh()` next to a `SkinnedMesh` follows the skeleton,
-//! and capsules may hang on bones. The mesh of the cloth itself has no skin: a skinned one is simulated from its bind
-//! pose, with a warning.
+//! A `Cloth` on a skinned mesh is worn: its pins are on the skin, a [`ClothSkin`](prelude::ClothSkin) says how far the rest may be
+//! from where the skeleton has it, and it steps after animation, to the very moment that is drawn
+//! ([`ClothTiming`](prelude::ClothTiming)).
 //!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_drape::prelude::*;
+//! # fn dress(mut commands: Commands, cape: Entity) {
+//! commands.entity(cape).insert((
+//!     Cloth::default(),
+//!     Pins::edge(ClothEdge::Top),
+//!     ClothSkin { max_distance: ClothMap::Uniform(0.5), backstop: Some(0.01), ..default() },
+//! ));
+//! # }
+//! ```
+//!
+//! It collides with its wearer as with anything: a `ClothCollider::mesh()` next to a `SkinnedMesh` follows the skeleton, and capsules
+//! may hang on bones. What isn't skinned can be pinned to bones, as to any entity.
+//!
+//! A skeleton that is put elsewhere takes its clothes along ([`ClothTeleport`](prelude::ClothTeleport)).
 //! [`teleport_cloth`](prelude::ClothCommands::teleport_cloth) on the root of a character takes along its cloths,
 //! obstacles and pins; [`shift_world`](prelude::WorldShiftCommands::shift_world) is for floating origins.
 //!
