@@ -202,7 +202,7 @@ fn spawn_figure(world: &mut World, place: Vec3) {
 }
 
 /// An app that steps once an update.
-fn headless(plugin: Option<ClothPlugin>) -> App {
+pub(crate) fn headless(plugin: Option<ClothPlugin>) -> App {
     let frame = Duration::from_secs_f32(FRAME);
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin))
@@ -225,7 +225,7 @@ fn frame_microseconds(app: &mut App, frames: u32) -> f64 {
 }
 
 /// Wall time of some work, µs.
-fn microseconds(work: impl FnOnce()) -> f64 {
+pub(crate) fn microseconds(work: impl FnOnce()) -> f64 {
     let start = Instant::now();
     work();
     start.elapsed().as_secs_f64() * 1e6

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::{
     app, chaos,
+    character::Character,
     contact::Contact,
     hang,
     laboratory::{EXPERIMENTS, Extent},
@@ -57,6 +58,8 @@ enum Experiment {
     },
     /// What a frame costs with many flags of 32 x 20 particles in the wind
     Many(app::Many),
+    /// Clothes on animated characters: cost, strain
+    Character(Character),
     /// What threads gain: one hanging cloth shared by them, against as many cloths as threads side by side
     Threads {
         #[command(flatten)]
@@ -166,6 +169,7 @@ impl Experiment {
             Self::App { options } => app::one_cloth(options),
             Self::Build { options } => Ok(app::building(options)),
             Self::Many(many) => Ok(many.measure()),
+            Self::Character(character) => character.measure(),
             Self::Sizes { .. } | Self::Laboratory { .. } | Self::Chaos(_) => {
                 Err(io::Error::other("these are several measurements"))
             }

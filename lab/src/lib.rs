@@ -7,6 +7,7 @@
 
 pub mod app;
 pub mod chaos;
+pub mod character;
 pub mod clips;
 pub mod command_line;
 pub mod contact;
