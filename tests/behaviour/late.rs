@@ -73,7 +73,8 @@ fn hang_on(app: &mut App, target: Entity, settings: Cloth) -> (Entity, Vec3) {
 #[test]
 fn pins_are_at_their_animated_target_in_every_frame() {
     for rate in RATES {
-        for plugin in [ClothPlugin::default(), ClothPlugin::new(Update), ClothPlugin::new(PostUpdate)] {
+        let plugins = [ClothPlugin::default(), ClothPlugin::new(Update), ClothPlugin::new(PostUpdate)];
+        for (number, plugin) in plugins.into_iter().enumerate() {
             let mut app = with_rate(headless_with(plugin), rate);
             let target = app.world_mut().spawn(Transform::default()).id();
             let (late, late_offset) = hang_on(&mut app, target, late());
@@ -89,7 +90,8 @@ fn pins_are_at_their_animated_target_in_every_frame() {
                 assert!(shown.distance(place(&app, late, 0)) < 1e-6, "{shown} at {rate} Hz, {plugin:?}");
                 lag = lag.max(pin_error(&app, fixed, target, fixed_offset));
             }
-            assert!(lag > 0.02, "a fixed step lags: {lag} m at {rate} Hz, {plugin:?}");
+            // In `PostUpdate` it may come after animation by chance.
+            assert!(lag > 0.02 || number == 2, "a fixed step lags: {lag} m at {rate} Hz, {plugin:?}");
         }
     }
 }
@@ -394,8 +396,45 @@ fn a_shifted_world_changes_nothing() {
     assert!(off < 1e-4, "{off} m");
 }
 
+/// Changes the timing ten times, after 7, 8, 9 ... frames; `look` is told of each frame after a change.
+fn change_timing(app: &mut App, cloth: Entity, mut look: impl FnMut(&App, ClothTiming, usize)) {
+    for change in 0..10 {
+        let timing = if change % 2 == 0 { ClothTiming::Late } else { ClothTiming::Auto };
+        get_mut::<Cloth>(app, cloth).timing = timing;
+        for frame in 0..(7 + change) {
+            run(app, 1);
+            look(app, timing, frame);
+        }
+    }
+}
+
 #[test]
 fn a_change_of_timing_makes_no_jump() {
+    for rate in RATES {
+        let mut app = app_at(rate);
+        // It swings down about its edge, and takes a second for that in thick air.
+        let settings = Cloth { fluid_density: 5.0, ..default() };
+        let cloth = spawn_cloth(&mut app, GRID.lying(), (settings, Pins::edge(ClothEdge::Top)));
+        run(&mut app, 4);
+        let (dt, step) = (1.0 / rate as f32, 1.0 / 64.0);
+        let mut shown = points(drawn(&app, cloth));
+        change_timing(&mut app, cloth, |app, timing, frame| {
+            let now = points(drawn(app, cloth));
+            for (vertex, (then, now)) in shown.iter().zip(&now).enumerate() {
+                let velocity = state(app, cloth).velocity(vertex).unwrap();
+                // A step at most comes on top of a frame, or is missing; and speeds change by some 10 m/s².
+                let (way, slack) = (now - then, 20.0 * (dt + step) * (dt + step));
+                let context = format!("{way} of {velocity} m/s at {rate} Hz, {timing:?}, frame {frame}");
+                assert!(way.length() < velocity.length() * (dt + step) + slack, "{context}");
+                assert!(way.dot(velocity.normalize_or_zero()) > -slack, "back: {context}");
+            }
+            shown = now;
+        });
+    }
+}
+
+#[test]
+fn a_change_of_timing_takes_pins_on_as_they_go() {
     for rate in RATES {
         let mut app = app_at(rate);
         let target = app.world_mut().spawn(Transform::default()).id();
@@ -403,30 +442,14 @@ fn a_change_of_timing_makes_no_jump() {
         let way = |time: f32| Transform::from_xyz(0.0, 0.0, 2.0 * time);
         app.world_mut().entity_mut(target).insert(Animated(way));
         run(&mut app, (2.0 * rate) as usize);
-        let mut shown = points(drawn(&app, cloth));
-        for change in 0..10 {
-            let timing = if change % 2 == 0 { ClothTiming::Late } else { ClothTiming::Auto };
-            get_mut::<Cloth>(&mut app, cloth).timing = timing;
-            for frame in 0..(7 + change) {
-                run(&mut app, 1);
-                let now = points(drawn(&app, cloth));
-                // All goes at 2 m/s, and a step at most comes on top of a frame or is missing.
-                let (dt, step) = (1.0 / rate as f32, 1.0 / 64.0);
-                for (then, now) in shown.iter().zip(&now) {
-                    let way = now - then;
-                    let context = format!("at {rate} Hz, {timing:?}, frame {frame}");
-                    assert!(way.with_z(0.0).length() < 0.01, "{way} {context}");
-                    assert!(way.z > -1e-3 && way.z < 2.0 * (dt + step) + 5e-3, "{way} {context}");
-                }
-                shown = now;
-                let velocity = state(&app, cloth).velocity(115).unwrap();
-                assert_close(velocity, Vec3::Z * 2.0, 0.7);
-                if timing == ClothTiming::Late {
-                    assert!(pin_error(&app, cloth, target, offset) < 1e-5);
-                    let pinned = state(&app, cloth).velocity(0).unwrap();
-                    assert!(frame == 0 || (pinned.z - 2.0).abs() < 0.05, "{pinned} at {rate} Hz, frame {frame}");
-                }
+        change_timing(&mut app, cloth, |app, timing, frame| {
+            if timing == ClothTiming::Late {
+                assert!(pin_error(app, cloth, target, offset) < 1e-5);
+                let pinned = state(app, cloth).velocity(0).unwrap().z;
+                // The first late step makes up for what fixed ones were behind: up to a frame and a step.
+                let most = if frame == 0 { 2.0 * (2.0 + rate as f32 / 64.0) } else { 2.05 };
+                assert!(pinned > 1.95 && pinned < most, "{pinned} m/s at {rate} Hz, frame {frame}");
             }
-        }
+        });
     }
 }
