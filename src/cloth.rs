@@ -129,8 +129,8 @@ pub struct Cloth {
     /// default. 0.5 to 3: more gets out sooner, and looks like a blow.
     #[reflect(@Parameter::positive("m/s", (0.1, 5.0)).logarithmic(0.1).entered((0.001, 1000.0)).titled("Leaving speed"))]
     pub max_depenetration_velocity: f32,
-    /// Whether the cloth collides with itself, and with other cloths that do too: triangles and edges stay apart, in folds, layers
-    /// and knots. No by default, since it costs.
+    /// Whether the cloth collides with itself, and with other cloths of the same [`timing`](Self::timing) that do too: triangles and
+    /// edges stay apart, in folds, layers and knots. No by default, since it costs.
     pub self_collision: bool,
     /// Distance in m that parts of cloth keep from each other, greater than 0, 0.004 by default. 0.002 to 0.01: less lies
     /// closer, more is safer in a rush. Parts that are nearer to each other at rest stay so. More than four edges of the mesh

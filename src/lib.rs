@@ -125,7 +125,7 @@
 //! }
 //! ```
 //!
-//! Move obstacles in `FixedUpdate`. One that is put elsewhere sweeps nothing, if that is told by
+//! Move obstacles in `FixedUpdate`; those that only late cloth meets, once a frame ([time and order](#time-and-order)). One that is put elsewhere sweeps nothing, if that is told by
 //! [`teleport_collider`](prelude::ClothCommands::teleport_collider) or is beyond the
 //! [`ColliderTeleportThreshold`](prelude::ColliderTeleportThreshold). The colliders of Avian and Rapier are obstacles
 //! too, and cloth pushes their bodies: [`ClothAvianPlugin`](prelude::ClothAvianPlugin),
@@ -160,7 +160,8 @@
 //! ```
 //!
 //! It collides with its wearer as with anything: a `ClothCollider::mesh()` next to a `SkinnedMesh` follows the skeleton, and capsules
-//! may hang on bones. What isn't skinned can be pinned to bones, as to any entity.
+//! may hang on bones. What isn't skinned can be pinned to bones, as to any entity; with [`ClothTiming::Late`](prelude::ClothTiming) it
+//! steps when the animation of the frame has been applied, too.
 //!
 //! A skeleton that is put elsewhere takes its clothes along ([`ClothTeleport`](prelude::ClothTeleport)).
 //! [`teleport_cloth`](prelude::ClothCommands::teleport_cloth) on the root of a character takes along its cloths,
@@ -226,6 +227,25 @@
 //! and drawing interpolates. [`ClothSystems`](prelude::ClothSystems) are the stages to order systems around: `Prepare`
 //! (`PreUpdate`), `Gather`, `Simulate` and `Finalize` (the plugin's schedule), `Draw` (`PostUpdate`). Push cloth before
 //! `Simulate`, read it after `Finalize`.
+//!
+//! Animation, though, is sampled in `PostUpdate`, after all fixed steps. Clothes on a character, or a flag on a pole in its
+//! hand, step with [`ClothTiming::Late`](prelude::ClothTiming): once in each frame, by the frame's time, when transforms have
+//! been propagated, and nothing is interpolated. They touch what is drawn. Add forces before
+//! [`ClothSystems::Late`](prelude::ClothSystems::Late), and read them after it. For the same motion whatever the frames are,
+//! as servers and replays need it, and for bodies of physics engines, stay with fixed steps.
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_drape::prelude::*;
+//! # #[derive(Component)] struct Hand;
+//! fn raise_flag(mut commands: Commands, hand: Single<Entity, With<Hand>>, mut meshes: ResMut<Assets<Mesh>>) {
+//!     commands.spawn((
+//!         Mesh3d(meshes.add(ClothGrid::new(1.0, 0.6, 33, 21))),
+//!         Cloth { timing: ClothTiming::Late, ..default() },
+//!         Pins::edge(ClothEdge::Left).to_entity(*hand),
+//!     ));
+//! }
+//! ```
 //!
 //! ```
 //! # use bevy::prelude::*;

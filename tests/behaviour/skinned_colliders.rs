@@ -97,6 +97,35 @@ fn points_follow_their_joints_from_step_to_step() {
 }
 
 #[test]
+fn points_go_from_late_step_to_late_step_beside_fixed_ones() {
+    for rate in [30.0, 60.0, 144.0] {
+        let mut app = headless();
+        set_rates(&mut app, 1.0 / rate, 1.0 / 64.0);
+        let limb = spawn_limb(&mut app, Transform::from_xyz(1.0, 2.0, 3.0), ClothCollider::mesh());
+        for timing in [ClothTiming::Late, ClothTiming::Fixed] {
+            let away = Transform::from_xyz(30.0, 0.0, 0.0);
+            spawn_cloth(&mut app, ClothGrid::new(0.4, 0.4, 5, 5), (Cloth { timing, ..default() }, away));
+        }
+        let joints = limb.joints;
+        let animate = move |mut places: Query<&mut Transform>, time: Res<Time>| {
+            places.get_mut(joints[1]).unwrap().rotation = Quat::from_rotation_z(3.0 * time.elapsed_secs());
+            places.get_mut(joints[0]).unwrap().translation.x = time.elapsed_secs();
+        };
+        app.add_systems(PostUpdate, animate.before(TransformSystems::Propagate));
+        run(&mut app, 2);
+        let mut before = places(&app, limb.entity)[1].clone();
+        for _ in 0..20 {
+            run(&mut app, 1);
+            // The late pass comes last.
+            let [start, end] = places(&app, limb.entity);
+            assert_places(&start, &before, 1e-6);
+            assert_places(&end, &drawn_places(&app, &limb), 1e-5);
+            before = end;
+        }
+    }
+}
+
+#[test]
 fn weights_blend_and_bind_poses_count() {
     let mut app = headless();
     let limb = spawn_limb(&mut app, Transform::default(), ClothCollider::mesh());

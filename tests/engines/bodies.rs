@@ -52,6 +52,48 @@ fn a_body_that_flies_into_a_free_cloth_keeps_the_momentum_of_both() {
 }
 
 #[test]
+fn late_cloth_meets_bodies_and_gives_them_nothing() {
+    for engine in BOTH {
+        let velocity = Vec3::new(0.0, -1.0, 0.0);
+        let (mut app, sheet, body) = ball_at_sheet(engine, &Form::Ball(0.1), velocity);
+        get_mut::<Cloth>(&mut app, sheet).timing = ClothTiming::Late;
+        let mut nearest = f32::MAX;
+        for _ in 0..30 {
+            run(&mut app, 1);
+            let centre = get::<Transform>(&app, body).translation;
+            let distances = positions(&app, sheet).into_iter().map(|place| place.distance(centre));
+            nearest = distances.fold(nearest, f32::min);
+        }
+        assert!((0.09..0.12).contains(&nearest), "{engine:?}: {nearest} m");
+        let own = engine.velocity(&app, body);
+        assert!(own.distance(velocity) < 1e-4, "{engine:?}: {own} m/s");
+    }
+}
+
+#[test]
+fn late_cloth_on_a_body_follows_it_and_pulls_nothing() {
+    for engine in BOTH {
+        let mut app = engine.app();
+        engine.set_gravity(&mut app, Vec3::ZERO);
+        let body = engine.dynamic(&mut app, &Form::Ball(0.1), MASS, Transform::from_xyz(0.0, 0.3, 0.0));
+        let settings = Cloth { timing: ClothTiming::Late, collision_mask: 0, ..default() };
+        let pins = Pins::indices([0]).to_entity(body);
+        let cloth = spawn_cloth(&mut app, ClothGrid::new(0.5, 0.5, 9, 9), (settings, pins));
+        run(&mut app, 2);
+        let offset = place(&app, cloth, 0) - get::<Transform>(&app, body).translation;
+        let velocity = Vec3::new(0.5, 0.0, 0.2);
+        engine.set_velocity(&mut app, body, velocity);
+        for _ in 0..60 {
+            run(&mut app, 1);
+            let pinned = place(&app, cloth, 0) - get::<GlobalTransform>(&app, body).translation();
+            assert_close(pinned, offset, 1e-4);
+        }
+        assert_close(engine.velocity(&app, body), velocity, 1e-3);
+        assert!(tethers(&app, cloth).len() > 20, "{engine:?}: it hangs on its tethers");
+    }
+}
+
+#[test]
 fn a_body_falls_onto_a_held_cloth_and_stays_there() {
     for engine in BOTH {
         let mut app = engine.app();
