@@ -163,7 +163,8 @@
 //! may hang on bones. What isn't skinned can be pinned to bones, as to any entity; with [`ClothTiming::Late`](prelude::ClothTiming) it
 //! steps when the animation of the frame has been applied, too.
 //!
-//! A skeleton that is put elsewhere takes its clothes along ([`ClothTeleport`](prelude::ClothTeleport)).
+//! How much of its motion they feel says [`ClothInertia`](prelude::ClothInertia); a skeleton that is put elsewhere takes its clothes
+//! along ([`ClothTeleport`](prelude::ClothTeleport)).
 //! [`teleport_cloth`](prelude::ClothCommands::teleport_cloth) on the root of a character takes along its cloths,
 //! obstacles and pins; [`shift_world`](prelude::WorldShiftCommands::shift_world) is for floating origins.
 //!
@@ -409,7 +410,7 @@ pub mod prelude {
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
         schedule::{ClothPlugin, ClothSystems},
         simulate::budget::ClothBudget,
-        skin::{ATTRIBUTE_CLOTH, ClothMap, ClothSkin, ClothTeleport, TeleportMode},
+        skin::{ATTRIBUTE_CLOTH, ClothInertia, ClothMap, ClothSkin, ClothTeleport, TeleportMode},
         solver::{Ellipsoid, LevelPass, MeshError, Solid, TaperedCapsule},
         state::{
             ClothAttachments, ClothFailed, ClothFellAsleep, ClothGrabbed, ClothGrabs, ClothGrip, ClothPoint,

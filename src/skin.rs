@@ -1,7 +1,9 @@
 //! How far clothes may be from the body that wears them: `ClothSkin`, and what it makes of a mesh.
 
+mod inertia;
 pub(crate) mod teleport;
 
+pub use inertia::ClothInertia;
 pub use teleport::{ClothTeleport, TeleportMode};
 
 use bevy::{

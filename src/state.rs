@@ -35,7 +35,7 @@ pub use attachments::ClothAttachments;
 pub(crate) use attachments::HeldPin;
 pub(crate) use grabs::HeldGrab;
 pub use grabs::{ClothGrabbed, ClothGrabs, ClothGrip, ClothReleased, GrabId};
-pub(crate) use origin::{carry, shift, stay_near};
+pub(crate) use origin::{carry, shift, stay_near, take_along};
 pub(crate) use pending_build::{BuildKey, PendingBuild, TetherKey};
 pub(crate) use pin_anchor::PinAnchor;
 #[cfg(any(feature = "avian", feature = "rapier"))]

@@ -9,7 +9,7 @@ use crate::{
     draw::ClothMesh,
     frame::{Jump, Poses, Skeletons, Steps},
     pins::{PinTarget, Pins, targets_by_particle},
-    skin::{ClothSkin, ClothTeleport, TeleportMode, teleport::put_at_rest},
+    skin::{ClothInertia, ClothSkin, ClothTeleport, TeleportMode, teleport::put_at_rest},
     solver::{PinMotion, build::blend::BlendWeightBuild},
     state::{
         self, ClothAttachments, ClothGrabs, ClothState, ClothStatus, HeldPin, PinAnchor, Requests, Skinning, StepInput,
@@ -149,7 +149,7 @@ pub(crate) fn follow_targets(
         &mut ClothGrabs,
         &mut Requests,
         &mut StepInput,
-        (&mut Skinning, Option<&ClothTeleport>, &mut Warned),
+        (&mut Skinning, Option<&ClothTeleport>, Option<&ClothInertia>, &mut Warned),
     )>,
     skeletons: Skeletons,
     time: Res<Time>,
@@ -163,7 +163,7 @@ pub(crate) fn follow_targets(
         mut grabs,
         mut requests,
         mut input,
-        (mut skinning, teleport, mut warned),
+        (mut skinning, teleport, inertia, mut warned),
     ) in &mut cloths
     {
         if !status.is_running() || input.pass != poses.pass() {
@@ -174,7 +174,7 @@ pub(crate) fn follow_targets(
         for anchor in &mut attachments.anchors {
             anchor.follow(carrier, poses);
         }
-        let mut jump = None;
+        let (mut jump, mut taken_along) = (None, None);
         let pose = match &mut skinning.0 {
             Some(bound) => {
                 bound.read_joints(&skeletons);
@@ -185,8 +185,17 @@ pub(crate) fn follow_targets(
         if let Some(pose) = pose {
             state.is_disturbed |= state.pose != pose;
             jump = take_asked_jump((state, attachments, grabs), &mut requests, pose);
-            if jump.is_none() && skinning.0.is_some() {
-                jump = skeleton_jump((state, attachments, grabs), teleport, pose, time.delta_secs());
+            if let Some(bound) = skinning.0.as_mut().filter(|_| jump.is_none()) {
+                let dt = time.delta_secs();
+                jump = skeleton_jump((state, attachments, grabs), teleport, pose, dt);
+                if jump.is_none() {
+                    let inertia = inertia.copied().filter(|inertia| inertia.validate().is_ok()).unwrap_or_default();
+                    taken_along = inertia.unfelt(&state.pose, &pose, dt);
+                }
+                if let Some(motion) = &taken_along {
+                    state::take_along(state, attachments, grabs, motion);
+                    bound.take_along(motion);
+                }
             }
             state.pose = pose;
             state.follow_scale(attachments);
@@ -200,11 +209,12 @@ pub(crate) fn follow_targets(
         if jump.is_some() {
             attachments.anchors.iter_mut().for_each(PinAnchor::forget_way);
         }
-        input.jump = jump;
+        // Obstacles that go with the skeleton come from where the cloth was taken along to, too.
+        input.jump = jump.or(taken_along);
         state::stay_near(state, attachments, grabs);
         if let Some(bound) = &mut skinning.0 {
-            bound.advance(&state.topology, state.origin, input.jump.is_some());
-            if input.jump.is_some() && teleport.is_some_and(|teleport| teleport.mode == TeleportMode::Reset) {
+            bound.advance(&state.topology, state.origin, jump.is_some());
+            if jump.is_some() && teleport.is_some_and(|teleport| teleport.mode == TeleportMode::Reset) {
                 let ClothState { particles, .. } = state;
                 put_at_rest(bound.places(), &mut particles.position, &mut particles.velocity);
             }

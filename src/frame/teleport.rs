@@ -158,6 +158,11 @@ impl Jump {
         Some(Self { from: from.translation, to: to.translation, turn: turn.normalize() })
     }
 
+    /// Makes the motion that turns about `from` and takes it to `to`.
+    pub fn rigid(from: Vec3A, to: Vec3A, turn: Quat) -> Self {
+        Self { from, to, turn }
+    }
+
     /// Where it takes a place that is given relative to `origin` (both m), relative to [`end`](Self::end).
     ///
     /// Differences first: far from the world's origin, only they have precision left.

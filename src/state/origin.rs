@@ -24,6 +24,25 @@ pub(crate) fn carry(state: &mut ClothState, attachments: &mut ClothAttachments, 
     state.is_disturbed = true;
 }
 
+/// Takes a cloth along with a rigid motion that it isn't to feel, velocities turned. Hands and what is pinned to the world stay.
+pub(crate) fn take_along(
+    state: &mut ClothState,
+    attachments: &mut ClothAttachments,
+    grabs: &mut ClothGrabs,
+    motion: &Jump,
+) {
+    let old_origin = Vec3A::from(state.origin);
+    for positions in [&mut state.particles.position, &mut state.step_start] {
+        positions.iter_mut().for_each(|place| *place = motion.place(*place, old_origin));
+    }
+    state.particles.velocity.iter_mut().for_each(|velocity| *velocity = motion.direction(*velocity));
+    state.origin = motion.end().into();
+    let shift = motion.end() - old_origin;
+    attachments.world_places().for_each(|place| *place -= shift);
+    grabs.shift_origin(shift);
+    state.is_disturbed = true;
+}
+
 /// Moves the origin after a cloth that has gone far from it.
 pub(crate) fn stay_near(state: &mut ClothState, attachments: &mut ClothAttachments, grabs: &mut ClothGrabs) {
     let Some(&place) = state.particles.position.first() else { return };

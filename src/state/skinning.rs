@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use crate::{
-    frame::{Skeletons, is_invertible, joint_matrices},
+    frame::{Jump, Skeletons, is_invertible, joint_matrices},
     mesh_input::Skin,
     pins::PinTarget,
     solver::{self, SkinLimit, SkinLimits, SkinPose, Topology},
@@ -148,6 +148,14 @@ impl BoundSkin {
         if has_jumped || is_first || self.start.normal.len() != self.end.normal.len() {
             self.start.clone_from(&self.end);
         }
+    }
+
+    /// Has the latest skin come along with a rigid motion that its cloth isn't to feel.
+    pub fn take_along(&mut self, motion: &Jump) {
+        let origin = Vec3A::from(self.origin);
+        self.end.place.iter_mut().for_each(|place| *place = motion.place(*place, origin));
+        self.end.normal.iter_mut().for_each(|normal| *normal = motion.direction(*normal));
+        self.origin = motion.end().into();
     }
 
     /// Where the skin has the particles at the end of the coming step, relative to the cloth's origin, m.

@@ -227,6 +227,28 @@ fn clothes_are_teleported_with_their_skeleton() {
 }
 
 #[test]
+fn what_clothes_are_not_to_feel_takes_them_along() {
+    let lag = |inertia: ClothInertia| {
+        let mut app = headless();
+        let worn = spawn_worn(&mut app, dress(false), Transform::from_xyz(0.0, 2.0, 0.0), inertia);
+        run(&mut app, 60);
+        let mut lag = 0.0_f32;
+        for frame in 1..30 {
+            get_mut::<Transform>(&mut app, worn.joints[0]).translation.x = 4.0 * frame as f32 * STEP;
+            run(&mut app, 1);
+            let hem = place(&app, worn.cloth, (SIDE * (SIDE - 1)) as u32);
+            lag = lag.max(get::<Transform>(&app, worn.joints[0]).translation.x - 0.5 - hem.x);
+        }
+        lag
+    };
+    let [all, half, none] = [1.0, 0.5, 0.0].map(|linear| lag(ClothInertia { linear, ..default() }));
+    let capped = lag(ClothInertia { max_speed: 2.0, ..default() });
+    println!("the hem lags by {all} m, {half} m, {none} m; {capped} m");
+    assert!(all > 0.1 && half < 0.7 * all && none < 0.01);
+    assert!((capped - half).abs() < 0.02, "2 of 4 m/s are felt");
+}
+
+#[test]
 fn a_lost_joint_leaves_clothes_where_they_are_and_is_told_of_once() {
     let mut quiet = Quiet::new();
     let worn = spawn_worn(&mut quiet.app, dress(false), Transform::from_xyz(0.0, 2.0, 0.0), ());
