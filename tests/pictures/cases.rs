@@ -41,7 +41,7 @@ impl Case {
 
 /// One row of cells after the other. A cell is left free to the right of each that its skin or its morph targets take there.
 pub fn cases(images: &mut Assets<Image>) -> Vec<Option<Case>> {
-    let (cell, half) = (Vec3::X * CELL, Vec3::X * CELL / 2.0);
+    let cell = Vec3::X * CELL;
     let white = || vec![[1.0, 1.0, 1.0, 1.0]; VERTICES];
     let plain = |name| Case::new(name, grid());
     let with = |name, attribute, values: VertexAttributeValues| {
@@ -55,9 +55,9 @@ pub fn cases(images: &mut Assets<Image>) -> Vec<Option<Case>> {
         Some(Case { morph: cell, ..Case::new("morph targets", morphed(grid(), cell)) }),
         None,
         Some(Case {
-            skin: half,
-            morph: half,
-            ..Case::new("skin and morph targets", morphed(skinned(everything()), half))
+            skin: cell,
+            morph: -cell,
+            ..Case::new("skin and morph targets", morphed(skinned(everything()), -cell))
         }),
         None,
         Some(with("a custom attribute", WEIGHT_OF_WEFT, vec![0.5_f32; VERTICES].into())),
