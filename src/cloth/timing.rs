@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use super::Cloth;
 use crate::{
     frame::{Pass, Steps},
-    state::{ClothAttachments, ClothState, Skinning, Sleep, StepInput},
+    state::{ClothAttachments, ClothState, Skinning, StepInput},
 };
 
 /// When a cloth steps: in the plugin's schedule, or late in the frame, with what is drawn.
@@ -48,10 +48,10 @@ impl ClothTiming {
 
 /// Has every cloth step in the pass that its timing asks for, from this frame on.
 pub(crate) fn choose_passes(
-    mut cloths: Query<(&Cloth, &mut ClothState, &mut ClothAttachments, &mut Sleep, &mut StepInput, &Skinning)>,
+    mut cloths: Query<(&Cloth, &mut ClothState, &mut ClothAttachments, &mut StepInput, &Skinning)>,
     steps: Res<Steps>,
 ) {
-    for (cloth, mut state, mut attachments, mut sleep, mut input, skinning) in &mut cloths {
+    for (cloth, mut state, mut attachments, mut input, skinning) in &mut cloths {
         let pass = cloth.timing.pass(skinning.0.is_some());
         if pass == input.pass {
             continue;
@@ -63,7 +63,6 @@ pub(crate) fn choose_passes(
         input.attachment_owners.clear();
         input.attached_pins.clear();
         attachments.anchors.iter_mut().for_each(|anchor| anchor.change_pass(latest, now));
-        sleep.change_pass(latest, now);
         // Until the next step, it is drawn where it is by now: drawing doesn't go back into the step before.
         let state = &mut *state;
         state.step_start.clone_from(&state.particles.position);

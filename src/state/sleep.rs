@@ -65,13 +65,6 @@ impl Sleep {
         self.seen.set(step, ());
     }
 
-    /// The cloth steps in another pass from now on, whose latest step may be older: as for an anchor, that is as if it had been seen just before.
-    pub fn change_pass(&mut self, latest: StepNumber, now: StepNumber) {
-        if self.seen.get_since(latest).is_some() {
-            self.seen.set(now, ());
-        }
-    }
-
     /// Takes note of a step of `dt` seconds. True where the cloth has been at rest for long enough to sleep.
     pub fn note_step(&mut self, state: &ClothState, dt: f32) -> bool {
         let position = &state.particles.position;

@@ -86,8 +86,9 @@ fn pins_are_at_their_animated_target_in_every_frame() {
                 let error = pin_error(&app, late, target, late_offset);
                 assert!(error < 1e-6, "{error} m at {rate} Hz, {plugin:?}");
                 // And so is what is drawn, which nothing is added to: the cloth's entity stands at the origin.
-                let shown = points(drawn(&app, late))[0];
-                assert!(shown.distance(place(&app, late, 0)) < 1e-6, "{shown} at {rate} Hz, {plugin:?}");
+                let places = (0..121).map(|vertex| place(&app, late, vertex));
+                let off = apart(points(drawn(&app, late)), places);
+                assert!(off < 1e-6, "drawn off by {off} m at {rate} Hz, {plugin:?}");
                 lag = lag.max(pin_error(&app, fixed, target, fixed_offset));
             }
             // In `PostUpdate` it may come after animation by chance.
@@ -184,7 +185,8 @@ fn run_with(rate: f64, timing: ClothTiming, beside: Option<ClothTiming>) -> Vec<
     let mut app = app_at(rate);
     let target = app.world_mut().spawn(Animated(to_and_fro)).insert(Transform::default()).id();
     app.world_mut().spawn(Wind { velocity: Vec3::Z * 5.0, gusts: 0.8, gust_period: 0.5, ..default() });
-    let way = |time: f32| Transform::from_xyz(0.0, -0.1, 0.6 * ops::cos(5.0 * time));
+    // It follows the flag, and goes through it.
+    let way = |time: f32| to_and_fro(time) * Transform::from_xyz(0.0, -0.1, 0.1 + 0.4 * ops::cos(5.0 * time));
     let ball = app.world_mut().spawn((ClothCollider::from(Sphere::new(0.15)), Moved(way), way(0.0))).id();
     let settings = |timing| Cloth { self_collision: true, ..cloth_with(timing) };
     let pins = || Pins::edge(ClothEdge::Top).to_entity(target);
@@ -426,7 +428,8 @@ fn a_change_of_timing_makes_no_jump() {
                 let (way, slack) = (now - then, 20.0 * (dt + step) * (dt + step));
                 let context = format!("{way} of {velocity} m/s at {rate} Hz, {timing:?}, frame {frame}");
                 assert!(way.length() < velocity.length() * (dt + step) + slack, "{context}");
-                assert!(way.dot(velocity.normalize_or_zero()) > -slack, "back: {context}");
+                let is_fast = velocity.length() > 0.5;
+                assert!(!is_fast || way.dot(velocity.normalize()) > -5e-4, "back: {context}");
             }
             shown = now;
         });
@@ -451,5 +454,24 @@ fn a_change_of_timing_takes_pins_on_as_they_go() {
                 assert!(pinned > 1.95 && pinned < most, "{pinned} m/s at {rate} Hz, frame {frame}");
             }
         });
+    }
+}
+
+#[test]
+fn a_change_of_timing_takes_obstacles_on_as_they_go() {
+    for rate in RATES {
+        let mut app = app_at(rate);
+        let way = |time: f32| Transform::from_xyz(0.0, 0.0, 2.0 * time - 0.12);
+        let wall = app.world_mut().spawn((ClothCollider::from(Cuboid::new(2.0, 2.0, 0.2)), Moved(way), way(0.0))).id();
+        let settings = Cloth { gravity_scale: 0.0, fluid_density: 5.0, ..default() };
+        let cloth = spawn_cloth(&mut app, GRID, settings);
+        run(&mut app, rate as usize);
+        get_mut::<Cloth>(&mut app, cloth).timing = ClothTiming::Late;
+        for frame in 0..5 {
+            run(&mut app, 1);
+            let face = get::<GlobalTransform>(&app, wall).translation().z + 0.1;
+            let behind = positions(&app, cloth).iter().map(|place| face - place.z).fold(0.0, f32::max);
+            assert!(behind < 1e-4, "{behind} m within the wall at {rate} Hz, frame {frame}");
+        }
     }
 }
