@@ -159,8 +159,20 @@
 //! # }
 //! ```
 //!
-//! It collides with its wearer as with anything: a `ClothCollider::mesh()` next to a `SkinnedMesh` follows the skeleton, and capsules
-//! may hang on bones. What isn't skinned can be pinned to bones, as to any entity; with [`ClothTiming::Late`](prelude::ClothTiming) it
+//! A [`ClothBody`](prelude::ClothBody) on the root of a character gives its joints capsules, made from its skin. The clothes of that
+//! character meet them, and those of others only by [`ClothSkin::meets_others`](prelude::ClothSkin::meets_others): in a crowd,
+//! nobody's cape hooks on somebody else's arm.
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_drape::prelude::*;
+//! fn spawn_hero(mut commands: Commands) {
+//!     let except = vec!["Cape".into(), "Hair".into()]; // meshes that aren't of the body, or joints that need no capsule
+//!     commands.spawn((Name::new("hero"), Transform::default(), ClothBody { except, ..default() })); // and its scene
+//! }
+//! ```
+//!
+//! A `ClothCollider::mesh()` next to a `SkinnedMesh` follows the skeleton, too, and other obstacles may hang on bones. What isn't skinned can be pinned to bones, as to any entity; with [`ClothTiming::Late`](prelude::ClothTiming) it
 //! steps when the animation of the frame has been applied, too.
 //!
 //! How much of its motion they feel says [`ClothInertia`](prelude::ClothInertia); a skeleton that is put elsewhere takes its clothes
@@ -419,6 +431,7 @@ pub mod prelude {
         },
         surroundings::{
             ClothGravity,
+            body::{ClothBody, ClothBodyPart},
             collider::{ClothCollider, ColliderShape},
             wind::{Wind, WindShape},
         },

@@ -16,7 +16,7 @@ use crate::{
     frame::{self, ClothRun},
     simulate,
     surroundings::{
-        self,
+        self, body,
         collider::{self, changes},
         wind,
     },
@@ -146,6 +146,7 @@ impl Plugin for ClothPlugin {
                     build::system::warn_without_mesh,
                     build::system::build_cloths,
                     cloth::timing::choose_passes.after(build::system::build_cloths),
+                    body::make::make_bodies,
                 )
                     .in_set(ClothSystems::Prepare),
             )
@@ -173,6 +174,7 @@ impl Plugin for ClothPlugin {
             .add_systems(Last, draw::fit_skins.run_if(has_what_it_needs))
             .add_observer(build::system::on_cloth_removed)
             .add_observer(collider::on_collider_removed)
+            .add_observer(body::on_body_removed)
             .add_observer(cloth::update::on_springs_removed);
         #[cfg(feature = "mesh_colliders")]
         app.init_resource::<collider::mesh::PreparedMeshes>().add_systems(

@@ -12,6 +12,7 @@ use bevy::{
 
 pub(crate) mod budget;
 mod meeting;
+mod own_body;
 mod sleep;
 
 use crate::{
@@ -30,6 +31,7 @@ use crate::{
 };
 use budget::StepDuration;
 use meeting::Stepped;
+use own_body::OwnBodies;
 
 /// Working memory for as many cloths as are stepped at a time, which is far less than for all.
 #[derive(Default)]
@@ -48,11 +50,12 @@ impl ScratchPool {
 
 /// What acts on all cloths.
 #[derive(SystemParam)]
-pub(crate) struct Surroundings<'w> {
+pub(crate) struct Surroundings<'w, 's> {
     gravity: Res<'w, ClothGravity>,
     obstacles: Res<'w, Obstacles>,
     obstacle_changes: Res<'w, ObstacleChanges>,
     winds: Res<'w, Winds>,
+    own_bodies: OwnBodies<'w, 's>,
 }
 
 /// Steps all cloths of a pass, several at a time: each reads what is shared and writes only itself, so the order doesn't matter. Those
@@ -191,7 +194,8 @@ impl<'a> Parts<'a> {
             ..StepContext::new(dt, solver, material)
         };
         let reach = || StepReach::new(particles, &ctx);
-        surroundings.obstacles.around(reach, *origin, solver.collision_filter, *jump, (near, owners));
+        let own = surroundings.own_bodies.of(cloth.entity, cloth.skinning);
+        surroundings.obstacles.around(reach, *origin, solver.collision_filter, *jump, own, (near, owners));
         let ctx = StepContext { obstacles: near, ..ctx };
         Some(Self { particles, topology, ctx, origin: *origin })
     }

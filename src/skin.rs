@@ -33,7 +33,7 @@ const FIXED: f32 = 1e-4;
 /// as [`ATTRIBUTE_CLOTH`].
 ///
 /// The limits are those of Unreal Engine and Unity: a max distance from where the skeleton alone would have a vertex, and a backstop,
-/// a ball beneath the animated surface that cloth stays out of. On meshes without a skeleton it does nothing.
+/// a ball beneath the animated surface that cloth stays out of. On meshes without a skeleton only `meets_others` does anything.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -66,11 +66,21 @@ pub struct ClothSkin {
     /// Damping ratio of that spring, no unit, 0 or more, 1 by default, which doesn't swing.
     #[reflect(@Parameter::not_negative("", (0.0, 2.0)).entered((0.0, 100.0)))]
     pub pull_damping: f32,
+    /// Whether it meets the bodies of other characters too. By default it meets only the [`ClothBody`](crate::prelude::ClothBody) of
+    /// its own, if there is one: bodies that pass through each other, as those of a crowd do, would tear at it.
+    pub meets_others: bool,
 }
 
 impl Default for ClothSkin {
     fn default() -> Self {
-        Self { max_distance: ClothMap::default(), backstop: None, backstop_radius: 0.1, pull: 0.0, pull_damping: 1.0 }
+        Self {
+            max_distance: ClothMap::default(),
+            backstop: None,
+            backstop_radius: 0.1,
+            pull: 0.0,
+            pull_damping: 1.0,
+            meets_others: false,
+        }
     }
 }
 

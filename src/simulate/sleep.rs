@@ -65,6 +65,7 @@ impl SteppedItem<'_, '_> {
         let input = &*self.input;
         let moves = |pin: &PinMotion| pin.start != pin.end;
         let (origin, filter) = (self.state.origin, self.in_force.solver.collision_filter);
+        let own = || surroundings.own_bodies.of(self.entity, self.skinning);
         self.state.is_disturbed
             || self.is_sleeping_disabled
             || self.sleep.gravity != surroundings.gravity.0
@@ -72,7 +73,7 @@ impl SteppedItem<'_, '_> {
             || !input.grabs.is_empty()
             || !input.body_attachments.is_empty()
             || input.pin_motions.iter().any(moves)
-            || surroundings.obstacle_changes.are_near(reach, origin, filter)
+            || surroundings.obstacle_changes.are_near(reach, origin, filter, own)
             || self.in_force.settings.fluid_density > 0.0 && surroundings.winds.blow_in(reach, origin)
     }
 }

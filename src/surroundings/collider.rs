@@ -8,6 +8,7 @@ use bevy::{
 use crate::{
     frame::{FromLatestStep, Jump, JumpDetection, Pass, PastPose, PerPass, Poses},
     solver::{Body, CollisionFilter, Obstacle, Shape, Solid, StepReach},
+    surroundings::body::{BodyGroups, ClothBodyPart},
 };
 use error::ColliderError;
 use scale_mismatch::ScaleMismatchWarning;
@@ -163,6 +164,8 @@ pub struct Obstacles {
     pub(crate) list: Vec<(Entity, u32, Obstacle)>,
     /// How many of them are of this crate's own.
     own: usize,
+    /// Which of them are parts of which bodies.
+    bodies: BodyGroups,
 }
 
 impl Obstacles {
@@ -193,6 +196,7 @@ impl Obstacles {
     /// The world has been shifted, and all of them with it.
     pub(crate) fn shift(&mut self, by: Vec3) {
         self.list.iter_mut().for_each(|(_, _, obstacle)| obstacle.shift(by.into()));
+        self.bodies.shift(by);
     }
 
     /// All of them, with their entity and their layers.
@@ -201,13 +205,14 @@ impl Obstacles {
     }
 
     /// Writes the obstacles that `filter` selects and a cloth may `reach` into `near`, relative to its `origin`, and whose they are
-    /// into `owners`. For a cloth that has made a `jump`.
+    /// into `owners`. For a cloth that has made a `jump`. Of all bodies it meets its `own` only, if it has one.
     pub(crate) fn around(
         &self,
         reach: impl FnOnce() -> StepReach,
         origin: Vec3,
         filter: CollisionFilter,
         jump: Option<Jump>,
+        own: Option<Entity>,
         (near, owners): (&mut Vec<Obstacle>, &mut Vec<Entity>),
     ) {
         near.clear();
@@ -219,7 +224,16 @@ impl Obstacles {
         let origin = Vec3A::from(origin);
         let start = |start: Isometry3d, end| jump.map_or(start, |jump| jump.start_of(start, end));
         let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - origin, pose.rotation);
-        for (entity, _, obstacle) in self.list.iter().filter(|(_, layers, _)| filter.selects(*layers)) {
+        let rounding = Vec3A::splat(1e-6 * origin.abs().max_element());
+        // What has jumped isn't where it is for others.
+        let is_near = |[low, high]: [Vec3A; 2]| {
+            jump.is_some() || reach.meets([low - origin - rounding, high - origin + rounding])
+        };
+        let numbers = self
+            .bodies
+            .numbers(self.list.len(), |group| own.is_none_or(|own| own == group.body) && is_near(group.bounds));
+        let candidates = numbers.map(|number| &self.list[number]);
+        for (entity, _, obstacle) in candidates.filter(|(_, layers, _)| filter.selects(*layers)) {
             let start = relative(start(obstacle.start, &obstacle.end));
             let end = relative(obstacle.end);
             if reach.includes(&obstacle.shape, [&start, &end], obstacle.rounding) {
@@ -235,6 +249,7 @@ impl Obstacles {
 pub(crate) fn gather_obstacles(
     mut colliders: Query<(Entity, &ClothCollider, &mut ColliderMemory)>,
     mut obstacles: ResMut<Obstacles>,
+    parts: Query<&ClothBodyPart>,
     poses: Poses,
     jumps: JumpDetection,
 ) {
@@ -261,6 +276,8 @@ pub(crate) fn gather_obstacles(
         }
     }
     obstacles.end(of_engines);
+    let Obstacles { list, bodies, .. } = &mut *obstacles;
+    bodies.group(list, |entity| parts.get(entity).ok());
 }
 
 impl ColliderMemory {

@@ -12,6 +12,7 @@ mod bad_pins;
 mod bad_surroundings;
 mod bad_transforms;
 mod bad_values;
+mod body;
 mod budget;
 mod changed_mesh;
 mod closing_boxes;

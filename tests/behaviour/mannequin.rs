@@ -3,6 +3,7 @@
 use std::{collections::HashMap, path::Path, thread, time::Duration};
 
 use bevy::{
+    app::Plugins,
     asset::LoadState,
     gltf::GltfPlugin,
     math::Vec3A,
@@ -74,6 +75,11 @@ impl File {
 
 /// An app that has spawned the mannequin, and its transforms.
 fn spawned() -> App {
+    spawned_with(|_: &mut App| {})
+}
+
+/// The same with more plugins.
+pub fn spawned_with<M>(plugins: impl Plugins<M>) -> App {
     let mut app = App::new();
     app.add_plugins((
         MinimalPlugins,
@@ -84,7 +90,7 @@ fn spawned() -> App {
         WorldSerializationPlugin,
         GltfPlugin::default(),
     ));
-    app.init_asset::<StandardMaterial>();
+    app.init_asset::<StandardMaterial>().add_plugins(plugins);
     app.finish();
     app.cleanup();
     let server = app.world().resource::<AssetServer>().clone();

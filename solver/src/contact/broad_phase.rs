@@ -131,6 +131,12 @@ impl StepReach {
         start.translation.distance(start.translation.clamp(low, high)) - radius <= distance + way
     }
 
+    /// Whether anything within a box may be touched, given its corners, m.
+    pub fn meets(&self, [low, high]: [Vec3A; 2]) -> bool {
+        let distance = Vec3A::splat(self.distance);
+        ((self.low - distance).cmple(high) & low.cmple(self.high + distance)).all()
+    }
+
     /// Whether a wind may move the cloth: it blows, and where the cloth may be.
     pub fn is_in_wind(&self, wind: &WindSource) -> bool {
         let BoundingSphere { centre, radius } = BoundingSphere::around(self.low, self.high);
@@ -157,6 +163,14 @@ pub(crate) fn near_obstacles<'a>(
 }
 
 impl Obstacle {
+    /// Corners of a box around all places where a cloth may touch it within the step, however it turns, m. Infinite where there
+    /// is none.
+    pub fn bounds(&self) -> [Vec3A; 2] {
+        let way = self.start.translation.distance(self.end.translation);
+        let reach = Vec3A::splat(self.shape.reach() + self.rounding + way);
+        [self.start.translation - reach, self.start.translation + reach]
+    }
+
     /// Centre and radius of a ball around it at the start of the step, m, that holds it as well however it turns. None where
     /// there is none.
     pub(crate) fn ball(&self) -> Option<(Vec3A, f32)> {

@@ -9,6 +9,7 @@ use super::Obstacles;
 use crate::{
     frame::{Pass, PerPass, Steps},
     solver::{CollisionFilter, Obstacle, StepReach},
+    surroundings::body::ClothBodyPart,
 };
 
 /// Obstacles that have moved, changed, come or gone since the step before, of the present pass.
@@ -16,15 +17,33 @@ use crate::{
 pub(crate) struct ObstacleChanges {
     /// All obstacles in the step before of each pass, in the order of their entities.
     known: PerPass<Vec<(Entity, u32, Obstacle)>>,
-    /// Those that have changed with their layers: as they are, and as they were.
-    changed: Vec<(u32, Obstacle)>,
+    /// Those that have changed with their entity and layers: as they are, and as they were.
+    changed: Vec<(Entity, u32, Obstacle)>,
+    /// Those of them that are parts of bodies, with these, in the order of the parts.
+    parts: Vec<(Entity, Entity)>,
 }
 
 impl ObstacleChanges {
-    /// Whether a cloth may `reach` one of them that `filter` selects. Its places are relative to `origin`.
-    pub fn are_near(&self, reach: &StepReach, origin: Vec3, filter: CollisionFilter) -> bool {
+    /// Whether a cloth may `reach` one of them that `filter` selects, and that is no part of another body than its `own`, if it has
+    /// one. Its places are relative to `origin`.
+    pub fn are_near(
+        &self,
+        reach: &StepReach,
+        origin: Vec3,
+        filter: CollisionFilter,
+        own: impl FnOnce() -> Option<Entity>,
+    ) -> bool {
+        if self.changed.is_empty() {
+            return false;
+        }
+        let own = own();
+        let is_met = |entity: Entity| {
+            let part = self.parts.binary_search_by_key(&entity, |&(part, _)| part);
+            own.is_none_or(|own| part.is_ok_and(|number| self.parts[number].1 == own) || part.is_err())
+        };
         let relative = |pose: Isometry3d| Isometry3d::new(pose.translation - Vec3A::from(origin), pose.rotation);
-        self.changed.iter().filter(|(layers, _)| filter.selects(*layers)).any(|(_, obstacle)| {
+        let met = self.changed.iter().filter(|(entity, layers, _)| filter.selects(*layers) && is_met(*entity));
+        met.map(|(.., obstacle)| obstacle).any(|obstacle| {
             let ends = [relative(obstacle.start), relative(obstacle.end)];
             reach.includes(&obstacle.shape, ends.each_ref(), obstacle.rounding)
         })
@@ -55,7 +74,7 @@ impl ObstacleChanges {
             });
             if !is_same {
                 let either = before.into_iter().chain(now);
-                self.changed.extend(either.map(|(_, layers, obstacle)| (*layers, obstacle.clone())));
+                self.changed.extend(either.cloned());
             }
         }
         if !self.changed.is_empty() {
@@ -69,16 +88,21 @@ impl ObstacleChanges {
 /// before the next step.
 pub(crate) fn forget_changes(mut changes: ResMut<ObstacleChanges>) {
     changes.changed.clear();
+    changes.parts.clear();
 }
 
 /// Finds which obstacles have changed since the step before, in a step in which time goes on.
 pub(crate) fn find_changes(
     obstacles: Res<Obstacles>,
     mut changes: ResMut<ObstacleChanges>,
+    parts: Query<&ClothBodyPart>,
     (time, steps): (Res<Time>, Res<Steps>),
 ) {
     if time.delta_secs() > 0.0 {
         changes.follow(steps.pass(), &obstacles.list);
+        let ObstacleChanges { changed, parts: known, .. } = &mut *changes;
+        known.extend(changed.iter().filter_map(|&(entity, ..)| Some((entity, parts.get(entity).ok()?.body))));
+        known.sort_unstable();
     }
 }
 
@@ -96,7 +120,7 @@ mod tests {
         let mut now = now.to_vec();
         now.sort_unstable_by_key(|&(entity, ..)| entity);
         changes.follow(Pass::Fixed, &now);
-        let mut places: Vec<f32> = changes.changed.iter().map(|(_, obstacle)| obstacle.end.translation.x).collect();
+        let mut places: Vec<f32> = changes.changed.iter().map(|(.., obstacle)| obstacle.end.translation.x).collect();
         places.sort_unstable_by(f32::total_cmp);
         places
     }
