@@ -113,5 +113,5 @@ pub fn names(app: &mut App, body: Entity) -> Vec<String> {
 /// Distance of a place in the world from an obstacle at the end of the latest step, m.
 pub fn distance(obstacle: &Obstacle, place: Vec3) -> f32 {
     let Shape::Solid(solid) = &obstacle.shape else { panic!("a solid") };
-    solid.surface(obstacle.end.inverse().transform_point(place.into()).into()).distance
+    solid.surface(obstacle.end.inverse().transform_point(place)).distance
 }

@@ -30,7 +30,10 @@ fn assert_fits(app: &App, limb: &Limb) {
     let distances = distances(app, limb);
     let inside = distances.iter().filter(|distance| **distance < 1e-4).count() as f32 / distances.len() as f32;
     assert!(inside > 0.84, "{inside} inside");
-    assert!(distances.iter().all(|distance| distance.abs() < 0.03), "{distances:?}");
+    assert!(distances.iter().all(|distance| *distance < 0.01), "{distances:?}");
+    // Where the limb is bent, a capsule has skin of the other joint deep inside.
+    let on_surface = distances.iter().filter(|distance| distance.abs() < 0.01).count() as f32 / distances.len() as f32;
+    assert!(on_surface > 0.95, "{distances:?}");
 }
 
 #[test]
