@@ -107,6 +107,10 @@ impl Character {
     fn spawn(&self, world: &mut World, model: &Model, clip: &Clip, place: Vec3, phase: f32) {
         let character = world.spawn((Transform::from_translation(place), Actor { clip: clip.clone(), phase })).id();
         let (joints, parts) = model.spawn(world, character);
+        if !self.no_body {
+            let except = ["Tunic", "CapeFine"].map(String::from).to_vec();
+            world.entity_mut(character).insert(ClothBody { except, ..default() });
+        }
         for joint in joints {
             world.entity_mut(joint).insert(JointOf(character));
         }

@@ -287,7 +287,8 @@ impl ColliderMemory {
         self.pose[jumps.pass()].set(jumps.step(), pose);
         if past == PastPose::TooFar && !core::mem::replace(&mut self.told_of_jump, true) {
             debug!(
-                "collider {entity} has moved so far within a step that it is taken for a teleport: ask for                  teleport_collider, or raise ColliderTeleportThreshold if it is that fast"
+                "collider {entity} has moved so far within a step that it is taken for a teleport: ask for teleport_collider, \
+                 or raise ColliderTeleportThreshold if it is that fast"
             );
         }
         match past {

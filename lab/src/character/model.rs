@@ -66,7 +66,8 @@ impl Model {
         let part = |(name, mesh): &(String, Mesh)| {
             let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh.clone());
             let skeleton = SkinnedMesh { inverse_bindposes: inverse_bindposes.clone(), joints: joints.clone() };
-            (name.clone(), world.spawn((Mesh3d(mesh), skeleton, Transform::default(), ChildOf(root))).id())
+            let part = (Name::new(name.clone()), Mesh3d(mesh), skeleton, Transform::default(), ChildOf(root));
+            (name.clone(), world.spawn(part).id())
         };
         let parts = self.parts.iter().map(part).collect();
         (joints, parts)
