@@ -3,7 +3,9 @@
 use bevy::{
     app::FixedMain,
     asset::AssetEventSystems,
-    ecs::schedule::{InternedScheduleLabel, ScheduleLabel, SingleThreadedExecutor},
+    ecs::schedule::{
+        InternedScheduleLabel, ScheduleLabel, SingleThreadedExecutor, common_conditions::condition_changed_to,
+    },
     prelude::*,
 };
 
@@ -145,8 +147,13 @@ impl Plugin for ClothPlugin {
                         .before(build::system::build_cloths),
                     build::system::warn_without_mesh,
                     build::system::build_cloths,
-                    cloth::timing::choose_passes.after(build::system::build_cloths),
                     body::make::make_bodies,
+                    (
+                        cloth::timing::choose_passes,
+                        collider::begin_late_memory.run_if(condition_changed_to(true, cloth::timing::any_is_late)),
+                    )
+                        .chain()
+                        .after(build::system::build_cloths),
                 )
                     .in_set(ClothSystems::Prepare),
             )

@@ -83,9 +83,6 @@ pub(crate) struct JumpDetection<'w> {
 pub(crate) enum PastPose {
     /// There, and it has moved since.
     Known(Isometry3d),
-    /// There in the latest step of the plugin's schedule: it is new to the late pass, and cloth that has stepped there until
-    /// now has met it there.
-    KnownToFixed(Isometry3d),
     /// Nowhere, or it has been teleported since.
     Unknown,
     /// Farther away than any motion goes.
@@ -100,19 +97,13 @@ impl JumpDetection<'_> {
         memory: &PerPass<FromLatestStep<Isometry3d>>,
         pose: &Isometry3d,
     ) -> PastPose {
-        if self.is_teleported(entity) {
-            return PastPose::Unknown;
-        }
-        let own = memory[self.pass()].get(self.step()).map(|past| (past, PastPose::Known(past)));
-        // Never the other way round: what steps in the plugin's schedule doesn't depend on late cloth.
-        let of_fixed = || memory[Pass::Fixed].get_since(self.steps.latest_of(Pass::Fixed));
-        match own.or_else(|| of_fixed().map(|past| (past, PastPose::KnownToFixed(past)))) {
-            Some((past, known)) => {
+        match memory[self.pass()].get(self.step()) {
+            Some(past) if !self.is_teleported(entity) => {
                 let way = past.translation.distance(pose.translation);
                 let is_jump = self.threshold.is_exceeded(way, self.time.delta_secs());
-                if is_jump { PastPose::TooFar } else { known }
+                if is_jump { PastPose::TooFar } else { PastPose::Known(past) }
             }
-            None => PastPose::Unknown,
+            _ => PastPose::Unknown,
         }
     }
 

@@ -6,7 +6,7 @@ use bevy::{
 };
 
 use crate::{
-    frame::{FromLatestStep, Jump, JumpDetection, Pass, PastPose, PerPass, Poses},
+    frame::{FromLatestStep, Jump, JumpDetection, Pass, PastPose, PerPass, Poses, Steps},
     solver::{Body, CollisionFilter, Obstacle, Shape, Solid, StepReach},
     surroundings::body::{BodyGroups, ClothBodyPart},
 };
@@ -280,6 +280,19 @@ pub(crate) fn gather_obstacles(
     bodies.group(list, |entity| parts.get(entity).ok());
 }
 
+/// Lets the late pass begin with what the fixed one remembers, when the first cloth steps there: until now, it has met the
+/// obstacles there. Never the other way round: what steps in the plugin's schedule doesn't depend on late cloth.
+pub(crate) fn begin_late_memory(mut colliders: Query<&mut ColliderMemory>, steps: Res<Steps>) {
+    for mut memory in &mut colliders {
+        match memory.pose[Pass::Fixed].get_since(steps.latest_of(Pass::Fixed)) {
+            Some(pose) => memory.pose[Pass::Late].set(steps.present(), pose),
+            None => memory.pose[Pass::Late].forget(),
+        }
+        #[cfg(feature = "mesh_colliders")]
+        memory.triangles.begin_late();
+    }
+}
+
 impl ColliderMemory {
     /// Remembers a pose, and returns the one before it. What has jumped comes from where it is.
     fn come_to(&mut self, entity: Entity, pose: Isometry3d, jumps: &JumpDetection) -> Isometry3d {
@@ -292,7 +305,7 @@ impl ColliderMemory {
             );
         }
         match past {
-            PastPose::Known(past) | PastPose::KnownToFixed(past) => past,
+            PastPose::Known(past) => past,
             PastPose::Unknown | PastPose::TooFar => pose,
         }
     }

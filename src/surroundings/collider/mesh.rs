@@ -188,6 +188,11 @@ impl MeshColliderItem<'_, '_> {
 }
 
 impl Triangles {
+    /// The late pass begins with the points of the fixed one.
+    pub fn begin_late(&mut self) {
+        self.posed[Pass::Late] = self.posed[Pass::Fixed].clone();
+    }
+
     /// What to make of `source` under `scale`: what there is, where only rounding tells them apart.
     fn recipe(&self, source: Source, scale: Mat3A) -> Result<Recipe, ColliderError> {
         let known = self.in_force.as_ref().map(|&(recipe, _)| recipe);
