@@ -39,10 +39,9 @@ fn eigenvectors(mut matrix: [[f64; 3]; 3]) -> [DVec3; 3] {
         for row in &mut matrix {
             (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
         }
-        for k in 0..3 {
-            let (above, below) = (matrix[p][k], matrix[q][k]);
-            (matrix[p][k], matrix[q][k]) = (c * above - s * below, s * above + c * below);
-        }
+        let (above, below) = (matrix[p], matrix[q]);
+        matrix[p] = core::array::from_fn(|k| c * above[k] - s * below[k]);
+        matrix[q] = core::array::from_fn(|k| s * above[k] + c * below[k]);
         (axes[p], axes[q]) = (c * axes[p] - s * axes[q], s * axes[p] + c * axes[q]);
     }
     axes

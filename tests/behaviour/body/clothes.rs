@@ -98,3 +98,24 @@ fn a_body_far_from_the_origin_that_comes_fast_is_met_still() {
     }
     assert!(height(&app, cloth) > 1.0, "{}", height(&app, cloth));
 }
+
+#[test]
+fn a_body_that_clothes_dont_meet_leaves_them_asleep() {
+    let mut app = headless();
+    let character = spawn_body(&mut app, Transform::from_xyz(9.0, 0.0, 0.0));
+    let passer_by = spawn_body(&mut app, lying(Vec3::new(0.0, 3.0, 0.0)));
+    app.world_mut().spawn(ClothCollider::from(Cuboid::new(2.0, 0.2, 2.0)));
+    let cloth = spawn_cloth(&mut app, sheet(), ());
+    app.world_mut().entity_mut(cloth).insert((Transform::from_xyz(-9.0, 0.102, 0.0), ChildOf(character.root)));
+    run(&mut app, 400);
+    assert_eq!(*get::<ClothStatus>(&app, cloth), ClothStatus::Asleep);
+    for i in 0..20 {
+        get_mut::<Transform>(&mut app, passer_by.root).translation = Vec3::new(0.0, 0.1, 0.01 * i as f32);
+        run(&mut app, 1);
+        assert_eq!(*get::<ClothStatus>(&app, cloth), ClothStatus::Asleep);
+    }
+    app.world_mut().despawn(passer_by.root);
+    get_mut::<Transform>(&mut app, character.root).translation.z = 0.01;
+    run(&mut app, 1);
+    assert_eq!(*get::<ClothStatus>(&app, cloth), ClothStatus::Ready);
+}
