@@ -119,7 +119,7 @@ fn edits_stay_until_the_body_or_its_mesh_changes() {
     assert_eq!(names(&mut app, limb.root), ["lower", "upper"]);
     assert!(app.world().get_entity(upper).is_err(), "all are made anew");
 
-    let thick = Mesh::from(limb::mesh()).scaled_by(Vec3::new(2.0, 1.0, 2.0));
+    let thick = limb::mesh().scaled_by(Vec3::new(2.0, 1.0, 2.0));
     let handle = get::<Mesh3d>(&app, limb.mesh).0.clone();
     app.world_mut().resource_mut::<Assets<Mesh>>().insert(&handle, thick).unwrap();
     run(&mut app, 2);
