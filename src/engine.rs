@@ -106,6 +106,7 @@ impl<S: Clone + Send + Sync + 'static> Bridge<S> {
                     rounding: *rounding,
                     friction,
                     body: motion.body,
+                    is_rough: false,
                 };
                 (collider, layers, obstacle)
             }));

@@ -124,7 +124,7 @@ fn run(cloths: &mut [Running], substeps: u32, touch: &mut FeatureContacts) {
             if has_moved || !comes_after_obstacles {
                 cloth.project(span.clone());
             }
-            cloth.finish();
+            cloth.finish(span.clone());
         }
     }
     touch.keep_loads(cloths);

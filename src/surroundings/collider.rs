@@ -262,7 +262,8 @@ pub(crate) fn gather_obstacles(
                 memory.said = None;
                 memory.scale_mismatch.tell(entity);
                 let friction = collider.friction;
-                let obstacle = Obstacle { shape, start, end, rounding: 0.0, friction, body: None };
+                let is_rough = parts.contains(entity);
+                let obstacle = Obstacle { friction, is_rough, ..Obstacle::moving(shape, start, end) };
                 obstacles.list.push((entity, collider.layers, obstacle));
             }
             Ok(None) => memory.pose[jumps.pass()].forget(),

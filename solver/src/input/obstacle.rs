@@ -19,6 +19,9 @@ pub struct Obstacle {
     pub friction: f32,
     /// What it takes to move it. None for what no cloth moves.
     pub body: Option<Body>,
+    /// Whether only particles meet it: cloth sinks into what is thin between them, and takes no more substeps for that. For limbs, of
+    /// which it is only about the shape. No by default.
+    pub is_rough: bool,
 }
 
 impl Obstacle {
@@ -29,7 +32,7 @@ impl Obstacle {
 
     /// One that goes from `start` to `end`, which no cloth moves.
     pub fn moving(shape: impl Into<Shape>, start: Isometry3d, end: Isometry3d) -> Self {
-        Self { shape: shape.into(), start, end, rounding: 0.0, friction: 1.0, body: None }
+        Self { shape: shape.into(), start, end, rounding: 0.0, friction: 1.0, body: None, is_rough: false }
     }
 
     /// Moves it, and its way, by `by` (m).

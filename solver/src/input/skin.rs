@@ -162,8 +162,8 @@ pub struct SkinPose {
 /// What holds a cloth to an animated mesh within one step.
 ///
 /// Two [poses](SkinPose) are enough: from step to step they change places, and the one that becomes the end is written anew. A
-/// skin whose limits or lists are of another cloth's size holds nothing. Obstacles come after it in a substep: where both can't
-/// be, a particle is out of the obstacle, and farther from the mesh than it may be.
+/// skin whose limits or lists are of another cloth's size holds nothing. Obstacles come after it in a substep, and
+/// largest distances once more: where both can't be, a particle is no farther from the mesh than it may be, and in the obstacle.
 #[derive(Clone, Copy, Debug)]
 pub struct Skin<'a> {
     /// How far particles may be from the mesh.

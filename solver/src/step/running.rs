@@ -210,10 +210,13 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Ends the substep.
-    pub fn finish(&mut self) {
+    /// Ends the substep, which is the part `span` of the step.
+    pub fn finish(&mut self, span: Range<f32>) {
         let Self { scratch, substep, .. } = self;
         let ctx = substep.ctx;
+        if substep.is_near || substep.touches {
+            substep.hold_to_skin(scratch, span);
+        }
         if substep.is_near && substep.implicit.is_some() {
             self.contacts = self.contacts.max(scratch.implicit.contacts.len() as u32);
         }

@@ -263,6 +263,14 @@ impl Substep<'_> {
         }
     }
 
+    /// Takes back what obstacles have moved beyond its largest distance from an animated mesh, in the part `span` of the step.
+    pub fn hold_to_skin(&self, scratch: &mut Scratch, span: Range<f32>) {
+        let Scratch { lanes, skin, simd_level, .. } = scratch;
+        if let Some(solver) = skin.solver(self.ctx, span, self.h, *simd_level) {
+            solver.distances_only().solve(&mut lanes.whole());
+        }
+    }
+
     /// The coarse levels, if there are tethers: both hold the cloth within its length.
     fn levels(&self, simd_level: SimdLevel) -> Option<LevelSolve<'_>> {
         Some(LevelSolve {

@@ -19,6 +19,10 @@
 //! evenly as the mesh. Lengthened to what the mesh asks for they leave that to the springs, a few of which are then stretched by
 //! up to seven times their length.
 //!
+//! **Obstacles** come after the skin, and then its largest distances once more: where a body's capsule and what is painted contradict
+//! each other, what is painted holds. Else cloth is torn between the two: next to a collar within a capsule it is stretched
+//! twenty times.
+//!
 //! Strands aren't helped by another clamp before them: in cloth that a fast mesh holds within half an edge, strain is then the same
 //! to some hundredths of itself, in some scenes more and in others less.
 
@@ -96,6 +100,7 @@ impl SkinPoints {
             points: self,
             span,
             pull: skin.pulling().map(|[frequency, damping]| Pull::new(frequency, damping, h)),
+            has_backstops: true,
             parting: ctx.settings.max_depenetration_velocity * h,
             friction: ctx.material.friction,
             simd_level,
@@ -126,6 +131,8 @@ pub(crate) struct SkinSolver<'a> {
     /// The part of the step.
     span: Range<f32>,
     pull: Option<Pull>,
+    /// Whether backstops count.
+    has_backstops: bool,
     /// Largest way out of a backstop of what was inside before, m.
     parting: f32,
     /// Coulomb friction on a backstop, no unit.
@@ -134,6 +141,11 @@ pub(crate) struct SkinSolver<'a> {
 }
 
 impl SkinSolver<'_> {
+    /// The same that does nothing but hold particles within their largest distance: obstacles have moved them since.
+    pub fn distances_only(self) -> Self {
+        Self { pull: None, has_backstops: false, ..self }
+    }
+
     /// Holds the particles of some blocks.
     pub fn solve(&self, run: &mut Run) {
         dispatch!(self.simd_level.level(), simd => self.solve_blocks(simd, run));
@@ -166,7 +178,7 @@ impl SkinSolver<'_> {
             }
             let most = lane(simd, &limit.max_distance);
             it.clamp(most);
-            if limit.has_backstop {
+            if limit.has_backstop && self.has_backstops {
                 let [from, to] = &self.points.normals;
                 let normals = [&from.0[run.first + i], &to.0[run.first + i]];
                 let backstop = Backstop8::new(simd, limit, normals, [self.span.start, self.span.end]);

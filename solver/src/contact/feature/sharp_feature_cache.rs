@@ -42,5 +42,7 @@ pub fn distance_to(obstacle: &Obstacle, ctx: &StepContext) -> f32 {
 
 /// How tightly a cloth, whose longest edge is of length `edge` (m), lies on an obstacle.
 pub fn tightness(obstacle: &Obstacle, edge: f32, ctx: &StepContext) -> FeatureTolerance {
+    // Nothing is thin to a cloth without edges.
+    let edge = if obstacle.is_rough { 0.0 } else { edge };
     FeatureTolerance { edge, distance: distance_to(obstacle, ctx), sink: sink(ctx) }
 }
