@@ -95,8 +95,8 @@ pub struct Cloth {
     /// that isn't enough, stiffness and damping are cut down to what is stable, and one warning says so.
     #[reflect(@Parameter::within("", (1.0, 10_000.0), (1.0, 2000.0)).whole())]
     pub max_substeps: u32,
-    /// The most work of a step, in particles times substeps, 1 to 1e9, `None` by default: as much as is asked for. Where that is more,
-    /// there are fewer substeps, but one at least: the cloth stretches more, and lets small obstacles through sooner. The same
+    /// The most work of a step, in particles times substeps per step, greater than 0, `None` by default: as much as is asked for. Where
+    /// that is more, there are fewer substeps, but one at least: the cloth stretches more, and lets small obstacles through sooner. The same
     /// on every machine, other than [`ClothBudget`](crate::prelude::ClothBudget). 10,000 is a tenth of a millisecond, about.
     /// It doesn't count what looking for contact costs, and [`ClothSolver::Explicit`] has `max_substeps` instead.
     #[reflect(@Parameter::within("", (1.0, 1e9), (1000.0, 1e6)).whole())]

@@ -289,7 +289,7 @@ mod tests {
     #[test]
     fn what_can_be_entered_is_accepted_and_sliders_have_nothing_else() {
         let all = [parameters::<Fabric>(), parameters::<Cloth>(), parameters::<ClothSprings>(), parameters::<Wind>()];
-        assert_eq!(all.each_ref().map(Vec::len), [15, 11, 6, 6]);
+        assert_eq!(all.each_ref().map(Vec::len), [15, 12, 6, 6]);
         for (field, Parameter { accepted, entered, slider, .. }, ..) in all.iter().flatten() {
             assert!(accepted.0 <= entered.0 && entered.1 <= accepted.1, "{field}");
             assert!(entered.0 <= slider.0 && slider.0 < slider.1 && slider.1 <= entered.1, "{field}");
