@@ -29,8 +29,9 @@ struct Running(Clip);
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     common::spawn_camera(&mut commands, Vec3::new(2.6, 1.5, -2.6), Vec3::new(0.0, 0.95, 0.0));
     let character = WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset("mannequin.glb")));
-    // The tunic and a finer cape are skinned too, and aren't the body.
-    commands.spawn((character, ClothBody { except: vec!["Tunic".into(), "CapeFine".into()], ..default() }));
+    // Other garments are skinned too, and aren't the body. Arms that swing through a cape would only hook on it.
+    let except = ["Tunic", "CapeFine", "lower_arm.L", "lower_arm.R", "hand.L", "hand.R"];
+    commands.spawn((character, ClothBody { except: except.map(String::from).into(), ..default() }));
     // It runs on the spot, so the wind comes from ahead.
     commands.spawn(Wind { velocity: Vec3::new(0.3, 0.0, -4.0), gusts: 0.3, ..default() });
 }
@@ -55,7 +56,7 @@ fn dress(
             "Skirt" => {
                 commands.entity(entity).insert((meeting.clone(), Fabric::COTTON_WOVEN, ClothSkin::default()));
             }
-            "CapeFine" => {
+            "CapeFine" | "Tunic" => {
                 commands.entity(entity).insert(Visibility::Hidden);
             }
             _ => {}

@@ -15,6 +15,14 @@ const MOST_ADVICE: usize = 3;
 /// Substeps to begin with where they are set by hand.
 const BEGUN_SUBSTEPS: u32 = 8;
 
+/// Limit to begin with: 8 substeps of 64 x 64 particles.
+const BEGUN_WORK: u32 = 32_768;
+
+const LIMITED_WORK: Naming = naming(
+    "Limited work",
+    "Cuts substeps, so that a step is no more than so much work: particles times substeps. Without it, as many are taken as are \
+     asked for.",
+);
 const BY_HAND: Naming = naming(
     "Substeps by hand",
     "Sets the number of substeps. Without it, they follow from the largest strain, and are 8 at least near obstacles.",
@@ -50,11 +58,13 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
                 show_levels(ui, cloth, differs("levels"));
                 show_tethers(ui, cloth, differs("tether_slack"));
                 knob::show(ui, cloth, "max_velocity", differs("max_velocity"));
+                show_work(ui, cloth, differs("max_work"));
             }
             ClothSolver::Xpbd => {
                 show_substeps(ui, cloth, differs("substeps"));
                 show_tethers(ui, cloth, differs("tether_slack"));
                 knob::show(ui, cloth, "max_velocity", differs("max_velocity"));
+                show_work(ui, cloth, differs("max_work"));
             }
             ClothSolver::Explicit => {
                 knob::show(ui, cloth, "max_substeps", differs("max_substeps"));
@@ -63,6 +73,14 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
         }
         show_advice(ui, model);
     });
+}
+
+fn show_work(ui: &mut Ui, cloth: &mut Cloth, differs: bool) {
+    let mut is_on = cloth.max_work.is_some();
+    if tick(ui, LIMITED_WORK, differs, &mut is_on) {
+        cloth.max_work = is_on.then_some(BEGUN_WORK);
+    }
+    knob::show(ui, cloth, "max_work", differs);
 }
 
 fn show_substeps(ui: &mut Ui, cloth: &mut Cloth, differs: bool) {
