@@ -11,4 +11,4 @@ pub(crate) use binding::Binding;
 pub(crate) use mesh::{ClothMesh, Drawn, release, shape_cloths, write_meshes};
 #[cfg(feature = "mesh_colliders")]
 pub(crate) use skin::TakenOff;
-pub(crate) use skin::{Lost, copy_with_skin, copy_without_skin, fit_skins};
+pub(crate) use skin::{Lost, copy_with_skin, copy_without_skin, fit_skins, take_skin_off};

@@ -182,6 +182,8 @@ impl Plugin for ClothPlugin {
             .add_observer(build::system::on_cloth_removed)
             .add_observer(collider::on_collider_removed)
             .add_observer(body::on_body_removed)
+            .add_observer(build::system::on_skeleton_removed)
+            .add_observer(attach::pins::on_skin_removed)
             .add_observer(cloth::update::on_springs_removed);
         #[cfg(feature = "mesh_colliders")]
         app.init_resource::<collider::mesh::PreparedMeshes>().add_systems(

@@ -58,6 +58,13 @@ pub(crate) fn update_pins(
     }
 }
 
+/// Without a [`ClothSkin`], the defaults are in force again.
+pub(crate) fn on_skin_removed(removed: On<Remove, ClothSkin>, mut pins: Query<&mut Pins>) {
+    if let Ok(mut pins) = pins.get_mut(removed.entity) {
+        pins.set_changed();
+    }
+}
+
 /// Pins particles to their targets where they are now, and lets go of the others.
 ///
 /// A particle that keeps its target keeps its place there.

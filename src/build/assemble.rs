@@ -50,7 +50,11 @@ impl CandidateItem<'_, '_> {
     ) -> Result<Option<Built>, ClothError> {
         let skeleton = self.skeleton.as_deref().filter(|_| is_skinned(mesh)).cloned();
         let bindposes = match skeleton.as_ref().map(|skeleton| skeletons.bindposes(skeleton)) {
-            Some(None) => return Ok(None),
+            Some(None) => {
+                // Asked again until they are there.
+                self.pending.0.get_or_insert(BuildKey { to_world: Mat3A::IDENTITY, tethers: None });
+                return Ok(None);
+            }
             bindposes => bindposes.flatten(),
         };
         let worn = skeleton.as_ref().zip(bindposes);

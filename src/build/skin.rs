@@ -31,7 +31,7 @@ impl CandidateItem<'_, '_> {
         let particles = first_vertices(&plan.binding.particle_of_vertex, plan.topology.particle_count());
         let all: Vec<u32> = (0..positions.len() as u32).collect();
         let read = |vertices: &[u32]| Skin::read(mesh, &positions, vertices);
-        let lost = |needed| ClothError::Skeleton { needed, found: joints.len() };
+        let lost = |needed| ClothError::Skeleton { needed, found: joints.len().min(bindposes.len()) };
         let skins = read(&particles).zip(read(&all)).ok_or(lost(1))?;
         let needed = skins.0.joint_count.max(skins.1.joint_count);
         let settings = self.skin.as_deref().cloned().unwrap_or_default();

@@ -2,6 +2,7 @@
 
 use bevy::{
     asset::LoadState,
+    mesh::skinning::SkinnedMesh,
     platform::collections::{HashMap, HashSet},
     prelude::*,
 };
@@ -110,4 +111,22 @@ pub(crate) fn on_cloth_removed(
         .entity(removed.entity)
         .try_remove::<(ClothMesh, ClothState, ClothAttachments, ClothGrabs, ClothReport, ClothStatus)>()
         .try_remove::<(InForce, PendingBuild, Requests, Skinning, Sleep, StepInput, Warned)>();
+}
+
+/// Has a cloth be built without its skeleton where that is removed. Till then its mesh has no joints: with them and without a skeleton
+/// beside, it would be an error of the renderer that ends the app.
+pub(crate) fn on_skeleton_removed(
+    removed: On<Remove, SkinnedMesh>,
+    mut cloths: Query<(&ClothMesh, &mut Skinning, &mut Requests)>,
+    meshes: Option<ResMut<Assets<Mesh>>>,
+) {
+    let (Ok((cloth, mut skinning, mut requests)), Some(mut meshes)) = (cloths.get_mut(removed.entity), meshes) else {
+        return;
+    };
+    if skinning.0.take().is_some() {
+        requests.reset = true;
+        if let Some(mesh) = meshes.get_mut(&cloth.drawn) {
+            draw::take_skin_off(mesh.into_inner());
+        }
+    }
 }

@@ -5,6 +5,7 @@ use bevy::prelude::*;
 use super::Cloth;
 use crate::{
     frame::{Pass, Steps},
+    pins::Pins,
     state::{ClothAttachments, ClothState, Skinning, StepInput},
 };
 
@@ -48,16 +49,19 @@ impl ClothTiming {
 
 /// Has every cloth step in the pass that its timing asks for, from this frame on.
 pub(crate) fn choose_passes(
-    mut cloths: Query<(&Cloth, &mut ClothState, &mut ClothAttachments, &mut StepInput, &Skinning)>,
+    mut cloths: Query<(&mut Cloth, &mut Pins, &mut ClothState, &mut ClothAttachments, &mut StepInput, &Skinning)>,
     steps: Res<Steps>,
 ) {
-    for (cloth, mut state, mut attachments, mut input, skinning) in &mut cloths {
+    for (mut cloth, mut pins, mut state, mut attachments, mut input, skinning) in &mut cloths {
         let pass = cloth.timing.pass(skinning.0.is_some());
         if pass == input.pass {
             continue;
         }
         let (latest, now) = (steps.latest_of(input.pass), steps.present());
         input.pass = pass;
+        // What has changed with it is read in the new pass, and the old one may have passed it over already.
+        cloth.set_changed();
+        pins.set_changed();
         // What only the other pass fills.
         input.body_attachments.clear();
         input.attachment_owners.clear();

@@ -24,6 +24,9 @@ pub(super) struct BindSpace {
     inverses: Vec<Affine3A>,
     /// Place of the first joint, m.
     pub place: Vec3A,
+    /// What they did when it was read before, and whether that differs.
+    latest: Vec<Affine3A>,
+    pub has_moved: bool,
     /// Whether the skin alone draws each particle.
     is_pinned: Vec<bool>,
     /// The mesh asset doesn't have the joints of all vertices yet.
@@ -39,13 +42,15 @@ impl BindSpace {
         let Some(place) = joint_matrices(&bound.joints, &bound.bindposes, pose, &mut self.matrices) else {
             return false;
         };
+        self.has_moved = self.place != place || self.latest != self.matrices;
+        self.latest.clone_from(&self.matrices);
         self.place = place;
         self.inverses.clear();
         self.inverses.extend(self.matrices.iter().map(Affine3A::inverse));
-        let is_sound = |matrix: &Affine3A| matrix.is_finite();
+        // A joint of no size, as that of a head that is hidden, matters only to what is bound to it.
         self.matrices.len() >= bound.vertices.joint_count
-            && self.matrices.iter().all(is_sound)
-            && self.inverses.iter().all(is_sound)
+            && self.matrices.iter().all(|matrix| matrix.is_finite())
+            && bound.strongest.iter().all(|&joint| self.inverses[usize::from(joint)].is_finite())
     }
 
     /// Takes note of which of so many particles are pinned to the skin.

@@ -129,7 +129,9 @@ impl Drawn {
         }
         let place = if bound.is_some() { self.bind_space.place } else { pose.translation };
         self.next_carry.update(state.origin.into(), anchors, now, place, poses);
-        let is_known = self.key == Some(key) && self.carry == self.next_carry;
+        // What lies still while its skeleton moves is written anew.
+        let is_left_behind = bound.is_some() && state.is_still && self.bind_space.has_moved;
+        let is_known = self.key == Some(key) && self.carry == self.next_carry && !is_left_behind;
         if state.particles.is_empty() || is_known || !is_invertible(&pose) {
             return;
         }

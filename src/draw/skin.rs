@@ -1,8 +1,8 @@
-//! Keeps skins and morph targets away from cloth: its particles are in their place already.
+//! Has an entity carry the skin and the morph weights that its mesh is made for, and no others.
 //!
 //! Bevy chooses the pipeline by the mesh, and what is bound to it by the entity. Joints on the one without a skin on the
 //! other, or the other way round, are an error that ends the app; weights without morph targets hide the mesh on the web.
-//! So the cloth's own mesh has neither, and nor has the entity while it is drawn with it.
+//! A cloth's own mesh has no morph targets, and joints only where it is worn on a skeleton.
 
 use bevy::{
     ecs::{entity::EntityMapper, query::QueryData},
@@ -42,10 +42,15 @@ pub(crate) struct Lost {
 pub(crate) fn copy_without_skin(mesh: &Mesh) -> (Mesh, Lost) {
     let morph_targets = mesh.try_has_morph_targets().unwrap_or_default();
     let mut copy = if morph_targets { copy_without_morph_targets(mesh) } else { mesh.clone() };
-    let skin = [Mesh::ATTRIBUTE_JOINT_INDEX, Mesh::ATTRIBUTE_JOINT_WEIGHT];
-    let skin = skin.map(|attribute| copy.try_remove_attribute(attribute).is_ok()).contains(&true);
+    let skin = take_skin_off(&mut copy);
     copy.set_skinned_mesh_bounds(None);
     (copy, Lost { skin, morph_targets })
+}
+
+/// Takes joints and weights off a mesh. Whether it had any.
+pub(crate) fn take_skin_off(mesh: &mut Mesh) -> bool {
+    let skin = [Mesh::ATTRIBUTE_JOINT_INDEX, Mesh::ATTRIBUTE_JOINT_WEIGHT];
+    skin.map(|attribute| mesh.try_remove_attribute(attribute).is_ok()).contains(&true)
 }
 
 /// A copy whose vertices are drawn in bind space, by the skin that they have.

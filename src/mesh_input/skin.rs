@@ -117,11 +117,17 @@ fn strongest(weights: impl Iterator<Item = (u16, f32)>) -> u16 {
     weights.fold(first, |most, next| if next.1 > most.1 { next } else { most }).0
 }
 
-/// Weights as shares, by Bevy's rule: negative ones are none, and where there are none the first joint has it all.
+/// Weights as shares, by Bevy's rule: negative ones are none, and where there are none the first joint has it all. What is shares
+/// already, but for rounding, keeps its bits: the renderer doesn't divide them again.
 fn shares(weights: [f32; JOINTS]) -> [f32; JOINTS] {
+    const ROUNDING: f32 = 1e-3;
     let weights = weights.map(|weight| if weight.is_finite() { weight.max(0.0) } else { 0.0 });
     let sum: f32 = weights.iter().sum();
-    if sum > 0.0 { weights.map(|weight| weight / sum) } else { [1.0, 0.0, 0.0, 0.0] }
+    match sum {
+        _ if (sum - 1.0).abs() < ROUNDING => weights,
+        _ if sum > 0.0 => weights.map(|weight| weight / sum),
+        _ => [1.0, 0.0, 0.0, 0.0],
+    }
 }
 
 #[cfg(test)]

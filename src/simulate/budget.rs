@@ -123,7 +123,7 @@ fn divide(demands: &[Demand], seconds: f32) -> Vec<Option<u32>> {
     for cloth in nearest {
         let demand = &demands[cloth];
         let more = demand.substeps.saturating_sub(demand.least());
-        if cost(demand, more) <= left {
+        if demand.substeps == 0 || cost(demand, more) <= left {
             left -= cost(demand, more);
         } else {
             let affordable = (left / demand.seconds_per_substep).max(0.0) as u32;

@@ -30,12 +30,12 @@ pub struct ClothInertia {
     pub max_speed: f32,
     /// Highest speed of turning that is felt, rad/s, 0 or more. 12 by default, which is two turns a second.
     #[reflect(@Parameter::not_negative("rad/s", (0.0, 30.0)).entered((0.0, 1e6)))]
-    pub max_turn: f32,
+    pub max_angular_speed: f32,
 }
 
 impl Default for ClothInertia {
     fn default() -> Self {
-        Self { linear: 1.0, angular: 1.0, max_speed: 8.0, max_turn: 12.0 }
+        Self { linear: 1.0, angular: 1.0, max_speed: 8.0, max_angular_speed: 12.0 }
     }
 }
 
@@ -57,7 +57,7 @@ impl ClothInertia {
         let turn = rotation(to) * rotation(from).inverse();
         let turn = if turn.w < 0.0 { -turn } else { turn };
         let (axis, angle) = turn.normalize().to_axis_angle();
-        let unfelt_angle = angle - (self.angular * angle).min(self.max_turn * dt);
+        let unfelt_angle = angle - (self.angular * angle).min(self.max_angular_speed * dt);
         let unfelt = way - felt;
         let is_any = unfelt.length() > ROUNDING * way.length() || unfelt_angle > ROUNDING;
         let unfelt = if unfelt.length() > ROUNDING * way.length() { unfelt } else { Vec3A::ZERO };

@@ -31,7 +31,7 @@ pub struct ClothTeleport {
     pub angle: f32,
     /// Highest speed of turning in rad/s that is no teleport, however far. 40 by default.
     #[reflect(@Parameter::not_negative("rad/s", (0.0, 100.0)).entered((0.0, 1e6)))]
-    pub turn: f32,
+    pub angular_speed: f32,
 }
 
 /// What becomes of clothes whose skeleton is put elsewhere.
@@ -49,7 +49,7 @@ pub enum TeleportMode {
 
 impl Default for ClothTeleport {
     fn default() -> Self {
-        Self { mode: TeleportMode::Carry, distance: 0.5, speed: 40.0, angle: 1.0, turn: 40.0 }
+        Self { mode: TeleportMode::Carry, distance: 0.5, speed: 40.0, angle: 1.0, angular_speed: 40.0 }
     }
 }
 
@@ -71,7 +71,7 @@ impl ClothTeleport {
         let way = from.translation.distance(to.translation);
         let rotation = |pose: &Affine3A| pose.to_scale_rotation_translation().1;
         let angle = rotation(from).angle_between(rotation(to));
-        way > self.distance.max(self.speed * dt) || angle > self.angle.max(self.turn * dt)
+        way > self.distance.max(self.speed * dt) || angle > self.angle.max(self.angular_speed * dt)
     }
 }
 

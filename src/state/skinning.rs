@@ -34,6 +34,8 @@ pub(crate) struct BoundSkin {
     pub skin: Arc<Skin>,
     /// How vertices do.
     pub vertices: Arc<Skin>,
+    /// The joints that vertices follow most, each once.
+    pub strongest: Vec<u16>,
     /// The joints, and their inverse bind poses.
     pub joints: Vec<Entity>,
     pub bindposes: Vec<Mat4>,
@@ -65,7 +67,11 @@ impl BoundSkin {
     ) -> Option<Self> {
         let held: Vec<usize> = (0..skin.len()).filter(|&particle| held(particle)).collect();
         let main = if held.is_empty() { skin.main_joint(0..skin.len()) } else { skin.main_joint(held.into_iter()) };
+        let mut strongest: Vec<u16> = vertices.points().iter().map(|point| point.strongest()).collect();
+        strongest.sort_unstable();
+        strongest.dedup();
         let mut bound = Self {
+            strongest,
             skin: skin.into(),
             vertices: vertices.into(),
             joints: joints.to_vec(),
@@ -89,10 +95,12 @@ impl BoundSkin {
         self.joints[self.main]
     }
 
-    /// What that joint does to the mesh by now; none while a joint isn't there.
+    /// Where that joint is by now, with the rotation and scale that it gives the mesh; none while a joint isn't there.
     pub fn pose(&self) -> Option<Affine3A> {
-        let mut pose = *self.matrices.get(self.main).filter(|_| self.is_whole)?;
-        pose.translation += self.place;
+        let matrix = self.matrices.get(self.main).filter(|_| self.is_whole)?;
+        // Its own place, about which it turns, and not that of the mesh's origin.
+        let joint = Affine3A::from_mat4(self.bindposes[self.main]).inverse().translation;
+        let pose = Affine3A { translation: matrix.transform_point3a(joint) + self.place, ..*matrix };
         is_invertible(&pose).then_some(pose)
     }
 
@@ -117,6 +125,8 @@ impl BoundSkin {
         let limits_any = pull[0] > 0.0 || !limits.iter().all(is_free);
         self.limits = limits_any.then(|| Arc::new(SkinLimits::new(limits, topology)));
         self.pull = pull;
+        // They were of another moment, where there were none since.
+        self.end.normal.clear();
     }
 
     /// Whether the skin moves in the coming step.

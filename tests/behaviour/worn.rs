@@ -48,15 +48,19 @@ fn dress(uneven: bool) -> Mesh {
 
 /// Spawns clothes whose first joint is at `root`.
 fn spawn_worn(app: &mut App, mesh: Mesh, root: Transform, more: impl Bundle) -> Worn {
+    spawn_worn_above(app, mesh, 0.0, root, more)
+}
+
+/// The same with a mesh whose origin is so far below the first joint, m, as the feet of a character are.
+fn spawn_worn_above(app: &mut App, mesh: Mesh, height: f32, root: Transform, more: impl Bundle) -> Worn {
     let first = app.world_mut().spawn(root).id();
     let second = app.world_mut().spawn((Transform::from_xyz(0.0, -0.5, 0.0), ChildOf(first))).id();
-    let bindposes = vec![Mat4::IDENTITY, Mat4::from_translation(Vec3::Y * 0.5)];
-    let inverse_bindposes = app
-        .world_mut()
-        .resource_mut::<Assets<SkinnedMeshInverseBindposes>>()
-        .add(SkinnedMeshInverseBindposes::from(bindposes));
+    let bindposes = [0.0, 0.5].map(|below| Mat4::from_translation(Vec3::Y * (below - height)));
+    let bindposes = SkinnedMeshInverseBindposes::from(bindposes.to_vec());
+    let inverse_bindposes = app.world_mut().resource_mut::<Assets<SkinnedMeshInverseBindposes>>().add(bindposes);
     let joints = [first, second];
     let skeleton = SkinnedMesh { inverse_bindposes, joints: joints.to_vec() };
+    let mesh = mesh.translated_by(Vec3::Y * height);
     let cloth = spawn_cloth(app, mesh, (skeleton, Pins::edge(ClothEdge::Top)));
     app.world_mut().entity_mut(cloth).insert(more);
     run(app, 1);
@@ -244,6 +248,61 @@ fn what_clothes_are_not_to_feel_takes_them_along() {
     println!("the hem lags by {all} m, {half} m, {none} m; {capped} m");
     assert!(all > 0.1 && half < 0.7 * all && none < 0.01);
     assert!((capped - half).abs() < 0.02, "2 of 4 m/s are felt");
+}
+
+#[test]
+fn a_joint_that_turns_about_itself_goes_no_way_however_far_the_origin_of_its_mesh_is() {
+    let hem = |height: f32, linear: f32| {
+        let mut app = headless();
+        let inertia = ClothInertia { linear, ..default() };
+        let worn = spawn_worn_above(&mut app, dress(false), height, Transform::from_xyz(0.0, 2.0, 0.0), inertia);
+        for frame in 1..30 {
+            let turn = Quat::from_rotation_x(0.5 * ops::sin(6.0 * frame as f32 * STEP));
+            get_mut::<Transform>(&mut app, worn.joints[0]).rotation = turn;
+            run(&mut app, 1);
+        }
+        place(&app, worn.cloth, (SIDE * (SIDE - 1)) as u32)
+    };
+    let all = hem(0.0, 1.0);
+    for (height, linear) in [(0.0, 0.0), (2.0, 1.0), (2.0, 0.0)] {
+        assert_close(hem(height, linear), all, 1e-3);
+    }
+}
+
+#[test]
+fn clothes_lose_their_skeleton_or_their_skin_and_go_on_without() {
+    let mut app = headless();
+    let worn = spawn_worn(&mut app, dress(false), Transform::from_xyz(0.0, 2.0, 0.0), ());
+    let near = ClothSkin { max_distance: ClothMap::Uniform(0.01), ..default() };
+    app.world_mut().entity_mut(worn.cloth).insert(near);
+    get_mut::<Transform>(&mut app, worn.joints[1]).rotation = Quat::from_rotation_x(FRAC_PI_2);
+    run(&mut app, 60);
+    let hem = |app: &App| place(app, worn.cloth, (SIDE * SIDE - 5) as u32);
+    let held = hem(&app);
+    app.world_mut().entity_mut(worn.cloth).remove::<ClothSkin>();
+    run(&mut app, 60);
+    assert!(held.distance(hem(&app)) > 0.1, "it hangs by its pins alone");
+    app.world_mut().entity_mut(worn.cloth).remove::<SkinnedMesh>();
+    for _ in 0..3 {
+        assert!(!drawn(&app, worn.cloth).contains_attribute(Mesh::ATTRIBUTE_JOINT_INDEX), "or drawing it ends the app");
+        run(&mut app, 1);
+    }
+    assert_eq!(*get::<ClothStatus>(&app, worn.cloth), ClothStatus::Ready);
+    assert_close(place(&app, worn.cloth, 0), Vec3::new(-0.5, 0.0, 0.0), 1e-3);
+}
+
+#[test]
+fn a_joint_of_no_size_that_nothing_is_bound_to_stops_no_drawing() {
+    let mut app = headless();
+    let mesh =
+        dress(false).with_inserted_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT, vec![[1.0, 0.0, 0.0, 0.0]; SIDE * SIDE]);
+    let worn = spawn_worn(&mut app, mesh, Transform::from_xyz(0.0, 2.0, 0.0), ());
+    get_mut::<Transform>(&mut app, worn.joints[1]).scale = Vec3::ZERO;
+    run(&mut app, 2);
+    let before = points(drawn(&app, worn.cloth));
+    animate(&mut app, &worn, 0.1);
+    run(&mut app, 5);
+    assert_ne!(before, points(drawn(&app, worn.cloth)));
 }
 
 #[test]
