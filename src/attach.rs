@@ -1,4 +1,5 @@
-//! What holds cloth: pins that follow their targets, and hands.
+//! What holds cloth: pins that follow their targets, skeletons that wear it, and hands.
 
 pub(crate) mod grabs;
 pub(crate) mod pins;
+mod skeleton;

@@ -5,11 +5,12 @@ use bevy::{
     prelude::*,
 };
 
+use super::skeleton;
 use crate::{
     draw::ClothMesh,
     frame::{Jump, Poses, Skeletons, Steps},
     pins::{PinTarget, Pins, targets_by_particle},
-    skin::{ClothInertia, ClothSkin, ClothTeleport, TeleportMode, teleport::put_at_rest},
+    skin::{ClothInertia, ClothSkin, ClothTeleport},
     solver::{PinMotion, build::blend::BlendWeightBuild},
     state::{
         self, ClothAttachments, ClothGrabs, ClothState, ClothStatus, HeldPin, PinAnchor, Requests, Skinning, StepInput,
@@ -193,16 +194,8 @@ pub(crate) fn follow_targets(
             state.is_disturbed |= state.pose != pose;
             jump = take_asked_jump((state, attachments, grabs), &mut requests, pose);
             if let Some(bound) = skinning.0.as_mut().filter(|_| jump.is_none()) {
-                let dt = time.delta_secs();
-                jump = skeleton_jump((state, attachments, grabs), teleport, pose, dt);
-                if jump.is_none() {
-                    let inertia = inertia.copied().filter(|inertia| inertia.validate().is_ok()).unwrap_or_default();
-                    taken_along = inertia.unfelt(&state.pose, &pose, dt);
-                }
-                if let Some(motion) = &taken_along {
-                    state::take_along(state, attachments, grabs, motion);
-                    bound.take_along(motion);
-                }
+                let (parts, rules) = ((&mut *state, &mut *attachments, &mut *grabs), (teleport, inertia));
+                (jump, taken_along) = skeleton::come_along(parts, bound, rules, pose, time.delta_secs());
             }
             state.pose = pose;
             state.follow_scale(attachments);
@@ -220,19 +213,7 @@ pub(crate) fn follow_targets(
         input.jump = jump.or(taken_along);
         state::stay_near(state, attachments, grabs);
         if let Some(bound) = &mut skinning.0 {
-            bound.advance(&state.topology, state.origin, jump.is_some());
-            if jump.is_some() && teleport.is_some_and(|teleport| teleport.mode == TeleportMode::Reset) {
-                let ClothState { particles, .. } = state;
-                put_at_rest(bound.places(), &mut particles.position, &mut particles.velocity);
-            }
-            state.is_disturbed |= bound.moves();
-            let is_lost = !bound.is_whole();
-            if is_lost && !core::mem::replace(&mut warned.lost_joint, is_lost) {
-                warn!(
-                    "cloth {entity} has lost a joint of its skeleton and stays where it was: give it a SkinnedMesh whose joints \
-                     are there"
-                );
-            }
+            skeleton::advance(entity, bound, state, jump.is_some(), teleport, &mut warned);
         }
         plan_motions(state, attachments, &mut input, &skinning);
     }
@@ -251,19 +232,6 @@ fn take_asked_jump(
         return Some(jump);
     }
     Jump::between(reset_from?, pose)
-}
-
-/// Has a cloth jump along with a skeleton that has been put elsewhere within a step of `dt` seconds, if it has.
-fn skeleton_jump(
-    (state, attachments, grabs): (&mut ClothState, &mut ClothAttachments, &mut ClothGrabs),
-    teleport: Option<&ClothTeleport>,
-    pose: Affine3A,
-    dt: f32,
-) -> Option<Jump> {
-    let teleport = teleport.copied().filter(|teleport| teleport.validate().is_ok()).unwrap_or_default();
-    let jump = teleport.is_exceeded(&state.pose, &pose, dt).then(|| Jump::between(state.pose, pose)).flatten()?;
-    state::carry(state, attachments, grabs, &jump);
-    Some(jump)
 }
 
 /// Plans the motion of each pin from where its particle is to where its anchor has it.

@@ -12,7 +12,7 @@ use crate::{
 /// When a cloth steps: in the plugin's schedule, or late in the frame, with what is drawn.
 ///
 /// Bevy animates in `PostUpdate`, after all fixed steps. Those see the pose of the frame before, and drawing is up to a step
-/// behind them: a collar on a runner's neck would hang some 10 to 20 cm behind it. A late step comes after animation and ends at
+/// behind them: a collar would hang behind a runner's neck. A late step comes after animation and ends at
 /// the moment that is drawn.
 ///
 /// | what | timing |

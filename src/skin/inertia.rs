@@ -11,6 +11,9 @@ use crate::{
     parameter::{Parameter, check_parameters},
 };
 
+/// Shares of a way, and angles in rad, that are rounding.
+const ROUNDING: f32 = 1e-4;
+
 /// How much of its skeleton's motion a [`Cloth`](crate::prelude::Cloth) on a skinned mesh feels: to be inserted beside it. Without it,
 /// it has the defaults.
 ///
@@ -59,16 +62,13 @@ impl ClothInertia {
         let (axis, angle) = turn.normalize().to_axis_angle();
         let unfelt_angle = angle - (self.angular * angle).min(self.max_angular_speed * dt);
         let unfelt = way - felt;
-        let is_any = unfelt.length() > ROUNDING * way.length() || unfelt_angle > ROUNDING;
         let unfelt = if unfelt.length() > ROUNDING * way.length() { unfelt } else { Vec3A::ZERO };
+        let is_any = unfelt != Vec3A::ZERO || unfelt_angle > ROUNDING;
         (is_any && unfelt.is_finite() && unfelt_angle.is_finite()).then(|| {
             Jump::rigid(from.translation, from.translation + unfelt, Quat::from_axis_angle(axis, unfelt_angle.max(0.0)))
         })
     }
 }
-
-/// Shares of a way, and angles in rad, that are rounding.
-const ROUNDING: f32 = 1e-4;
 
 #[cfg(test)]
 mod tests {

@@ -11,17 +11,20 @@ const FARTHEST: f32 = 256.0;
 /// Carries the cloth rigidly along with a jump, velocities and world pins with it. Hands let go.
 pub(crate) fn carry(state: &mut ClothState, attachments: &mut ClothAttachments, grabs: &mut ClothGrabs, jump: &Jump) {
     grabs.release_all(state);
+    let old_origin = move_rigidly(state, jump);
+    attachments.world_places().for_each(|place| *place = jump.place(*place, old_origin));
+}
+
+/// Moves particles and origin by a rigid motion, and turns velocities. Returns where the origin was, m.
+fn move_rigidly(state: &mut ClothState, motion: &Jump) -> Vec3A {
     let old_origin = Vec3A::from(state.origin);
-    let carry = |p: &mut Vec3A| *p = jump.place(*p, old_origin);
-    state.origin = jump.end().into();
     for positions in [&mut state.particles.position, &mut state.step_start] {
-        positions.iter_mut().for_each(carry);
+        positions.iter_mut().for_each(|place| *place = motion.place(*place, old_origin));
     }
-    for velocity in &mut state.particles.velocity {
-        *velocity = jump.direction(*velocity);
-    }
-    attachments.world_places().for_each(carry);
+    state.particles.velocity.iter_mut().for_each(|velocity| *velocity = motion.direction(*velocity));
+    state.origin = motion.end().into();
     state.is_disturbed = true;
+    old_origin
 }
 
 /// Takes a cloth along with a rigid motion that it isn't to feel, velocities turned. Hands and what is pinned to the world stay.
@@ -31,16 +34,10 @@ pub(crate) fn take_along(
     grabs: &mut ClothGrabs,
     motion: &Jump,
 ) {
-    let old_origin = Vec3A::from(state.origin);
-    for positions in [&mut state.particles.position, &mut state.step_start] {
-        positions.iter_mut().for_each(|place| *place = motion.place(*place, old_origin));
-    }
-    state.particles.velocity.iter_mut().for_each(|velocity| *velocity = motion.direction(*velocity));
-    state.origin = motion.end().into();
+    let old_origin = move_rigidly(state, motion);
     let shift = motion.end() - old_origin;
     attachments.world_places().for_each(|place| *place -= shift);
     grabs.shift_origin(shift);
-    state.is_disturbed = true;
 }
 
 /// Moves the origin after a cloth that has gone far from it.

@@ -1,7 +1,5 @@
 //! How a cloth hangs on the skeleton of its mesh.
 
-use std::sync::Arc;
-
 use bevy::{
     math::{Affine3A, Vec3A},
     prelude::*,
@@ -31,9 +29,9 @@ impl Skinning {
 #[derive(Clone, Debug)]
 pub(crate) struct BoundSkin {
     /// How particles follow the joints.
-    pub skin: Arc<Skin>,
+    pub skin: Skin,
     /// How vertices do.
-    pub vertices: Arc<Skin>,
+    pub vertices: Skin,
     /// The joints that vertices follow most, each once.
     pub strongest: Vec<u16>,
     /// The joints, and their inverse bind poses.
@@ -42,7 +40,9 @@ pub(crate) struct BoundSkin {
     /// The joint that the cloth as a whole goes with, by its number.
     main: usize,
     /// How far particles may be from the skin; none where only pins are held by it.
-    limits: Option<Arc<SkinLimits>>,
+    limits: Option<SkinLimits>,
+    /// Whether any particle has a backstop: nothing else asks for normals.
+    has_backstop: bool,
     /// Own frequency, Hz, and damping ratio of the pull.
     pull: [f32; 2],
     /// Where the skin has the particles at the start and the end of the latest step, relative to `origin`.
@@ -72,12 +72,13 @@ impl BoundSkin {
         strongest.dedup();
         let mut bound = Self {
             strongest,
-            skin: skin.into(),
-            vertices: vertices.into(),
+            skin,
+            vertices,
             joints: joints.to_vec(),
             bindposes: bindposes.to_vec(),
             main: main.into(),
             limits: None,
+            has_backstop: false,
             pull: [0.0, 1.0],
             start: SkinPose::default(),
             end: SkinPose::default(),
@@ -123,7 +124,8 @@ impl BoundSkin {
     pub fn limit(&mut self, limits: &[SkinLimit], pull: [f32; 2], topology: &Topology) {
         let is_free = |limit: &SkinLimit| limit.max_distance == f32::INFINITY && limit.backstop.is_none();
         let limits_any = pull[0] > 0.0 || !limits.iter().all(is_free);
-        self.limits = limits_any.then(|| Arc::new(SkinLimits::new(limits, topology)));
+        self.limits = limits_any.then(|| SkinLimits::new(limits, topology));
+        self.has_backstop = limits.iter().any(|limit| limit.backstop.is_some());
         self.pull = pull;
         // They were of another moment, where there were none since.
         self.end.normal.clear();
@@ -149,7 +151,7 @@ impl BoundSkin {
             self.skin.pose(&self.matrices, &mut self.end.place);
             let offset = self.place - Vec3A::from(origin);
             self.end.place.iter_mut().for_each(|place| *place += offset);
-            if self.limits.is_some() {
+            if self.has_backstop {
                 normals(topology, &self.end.place, &mut self.end.normal);
             }
         } else {
@@ -176,7 +178,7 @@ impl BoundSkin {
     /// What holds the cloth in the coming step besides its pins.
     pub fn as_constraint(&self) -> Option<solver::Skin<'_>> {
         let [pull, pull_damping] = self.pull;
-        let limits = self.limits.as_deref()?;
+        let limits = self.limits.as_ref()?;
         Some(solver::Skin { pull, pull_damping, ..solver::Skin::new(limits, &self.start, &self.end) })
     }
 

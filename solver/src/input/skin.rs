@@ -138,7 +138,7 @@ fn up_to(most: f32, number: f32) -> f32 {
     if number > 0.0 { number.min(most) } else { 0.0 }
 }
 
-/// Mean length of the triangles' sides at rest, m.
+/// Mean length of the triangles' sides at rest, m. The surface has one as well, but is made only for cloth that touches something.
 fn mean_edge(topology: &Topology) -> f32 {
     let place = |i: u32| topology.rest[i as usize];
     let around =
