@@ -29,39 +29,27 @@ struct Running(Clip);
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     common::spawn_camera(&mut commands, Vec3::new(2.6, 1.5, -2.6), Vec3::new(0.0, 0.95, 0.0));
     let character = WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset("mannequin.glb")));
-    // Other garments are skinned too, and aren't the body. Arms that swing through a cape would only hook on it.
-    let except = ["Tunic", "CapeFine", "lower_arm.L", "lower_arm.R", "hand.L", "hand.R"];
+    // The tunic is skinned too, and isn't the body. Arms that swing through a cape would only hook on it.
+    let except = ["Tunic", "lower_arm.L", "lower_arm.R", "hand.L", "hand.R"];
     commands.spawn((character, ClothBody { except: except.map(String::from).into(), ..default() }));
     // It runs on the spot, so the wind comes from ahead.
     commands.spawn(Wind { velocity: Vec3::new(0.3, 0.0, -4.0), gusts: 0.3, ..default() });
 }
 
-/// Makes cloth of what is named so once the scene is there, and hides the clothes that another mesh draws.
-fn dress(
-    ready: On<WorldInstanceReady>,
-    parts: Query<(Entity, &ChildOf, Has<Mesh3d>)>,
-    names: Query<&Name>,
-    children: Query<&Children>,
-    mut commands: Commands,
-) {
+/// Makes cloth of what is named so once the scene is there. The cape that is seen is a finer mesh, which follows the one that is simulated.
+fn dress(ready: On<WorldInstanceReady>, names: Query<&Name>, children: Query<&Children>, mut commands: Commands) {
+    let nodes = || children.iter_descendants(ready.entity);
+    let named = |name: &str| nodes().find(|&node| names.get(node).is_ok_and(|own| own.as_str() == name));
+    let [Some(cape), Some(fine), Some(skirt), Some(tunic)] = ["Cape", "CapeFine", "Skirt", "Tunic"].map(named) else {
+        return error!("the mannequin lacks its clothes");
+    };
     // The cape lies on the skirt.
     let meeting = Cloth { self_collision: true, ..default() };
-    for part in children.iter_descendants(ready.entity) {
-        let Ok((entity, parent, true)) = parts.get(part) else { continue };
-        match names.get(parent.parent()).map_or("", Name::as_str) {
-            "Cape" => {
-                let skin = ClothSkin { backstop: Some(0.01), backstop_radius: 0.3, ..default() };
-                commands.entity(entity).insert((meeting.clone(), Fabric::WOOL_FLANNEL, skin));
-            }
-            "Skirt" => {
-                commands.entity(entity).insert((meeting.clone(), Fabric::COTTON_WOVEN, ClothSkin::default()));
-            }
-            "CapeFine" | "Tunic" => {
-                commands.entity(entity).insert(Visibility::Hidden);
-            }
-            _ => {}
-        }
-    }
+    let backstop = ClothSkin { backstop: Some(0.01), backstop_radius: 0.3, ..default() };
+    commands.entity(cape).insert((meeting.clone(), Fabric::WOOL_FLANNEL, backstop, Visibility::Hidden));
+    commands.entity(fine).insert(ClothProxy::new(cape));
+    commands.entity(skirt).insert((meeting, Fabric::COTTON_WOVEN, ClothSkin::default()));
+    commands.entity(tunic).insert(Visibility::Hidden);
 }
 
 /// Poses the joints, as Bevy's `AnimationPlayer` does in a game.

@@ -10,7 +10,10 @@ use crate::{
 
 mod assemble;
 mod candidate;
+mod copies;
+pub(crate) mod garment;
 pub(crate) mod plan;
+pub(crate) mod proxy;
 mod skin;
 pub(crate) mod system;
 

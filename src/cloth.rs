@@ -52,6 +52,9 @@ impl From<ClothSolver> for Method {
 
 /// Makes the entity's [`Mesh3d`] cloth. All else comes with it: [`Fabric`], [`Pins`], state and status.
 ///
+/// On an entity without a `Mesh3d` it makes one cloth of all meshes below it in the hierarchy, sewn where they meet: a garment
+/// ([`ClothPartOf`](crate::prelude::ClothPartOf)).
+///
 /// A mesh of up to 10,000 triangles is cloth from the next frame on. A larger one is worked on beside the frames, drawn
 /// as it is, until [`ClothReady`](crate::prelude::ClothReady) is sent; pins, fabric, settings and transform count as they are then.
 ///

@@ -1,6 +1,6 @@
 //! Why a mesh can't be cloth, and what to do about it.
 
-use bevy::prelude::Reflect;
+use bevy::prelude::{Entity, Reflect};
 use drape_solver::MeshError;
 use thiserror::Error;
 
@@ -46,6 +46,14 @@ pub enum ClothError {
         needed: usize,
         /// How many there are.
         found: usize,
+    },
+    /// A mesh of a garment is no part of its cloth.
+    #[error("the mesh of {part} can't be joined with the others of the garment: {reason}")]
+    Part {
+        /// The entity of the mesh.
+        part: Entity,
+        /// What is wrong with it, and how to mend it.
+        reason: String,
     },
     /// A pin names a vertex that the mesh doesn't have.
     #[error("a pin names vertex {vertex}, but the mesh has {count} vertices; pin vertices below that")]

@@ -46,7 +46,9 @@
 //!
 //! Any triangle mesh will do, from code or glTF, indexed or not. Vertices that share a position move as one particle
 //! and stay several vertices. Meshes that load late become cloth when they arrive, meshes that change are rebuilt, and
-//! the mesh asset is copied for each cloth. In a loaded scene, insert `Cloth` on the entity that has the `Mesh3d`.
+//! the mesh asset is copied for each cloth. In a loaded scene, insert `Cloth` on the entity that has the `Mesh3d`, or on one above
+//! several: without a mesh of its own, it makes one cloth of all meshes below, sewn where they meet
+//! ([`ClothPartOf`](prelude::ClothPartOf)).
 //! Cloth takes least time on a mesh that is one rectangle or tube of quads, triangulated or not:
 //! [`ClothGrid`](prelude::ClothGrid) makes such.
 //!
@@ -174,6 +176,18 @@
 //!
 //! A `ClothCollider::mesh()` next to a `SkinnedMesh` follows the skeleton, too, and other obstacles may hang on bones. What isn't skinned can be pinned to bones, as to any entity; with [`ClothTiming::Late`](prelude::ClothTiming) it
 //! steps when the animation of the frame has been applied, too.
+//!
+//! Clothes that are models of their own, on a skeleton with the same joints, are put on by [`ClothWornBy`](prelude::ClothWornBy):
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_drape::prelude::*;
+//! fn put_on(mut commands: Commands, coat: Entity, hero: Entity) {
+//!     commands.entity(coat).insert((ClothWornBy(hero), ChildOf(hero))); // and off by remove::<ClothWornBy>()
+//! }
+//! ```
+//!
+//! A mesh that is finer than what is simulated follows it by a [`ClothProxy`](prelude::ClothProxy).
 //!
 //! How much of its motion they feel says [`ClothInertia`](prelude::ClothInertia); a skeleton that is put elsewhere takes its clothes
 //! along ([`ClothTeleport`](prelude::ClothTeleport)).
@@ -307,7 +321,7 @@
 //!
 //! # Troubleshooting
 //!
-//! Look at [`ClothStatus`](prelude::ClothStatus) first. `Waiting`: there is no `Mesh3d` on the entity, or its mesh
+//! Look at [`ClothStatus`](prelude::ClothStatus) first. `Waiting`: there is no `Mesh3d` on the entity or below it, or a mesh
 //! hasn't loaded. `Building`: a mesh of more than 10,000 triangles is worked on beside the frames. `Failed`: the
 //! [`ClothError`] says what is wrong and how to mend it.
 //!
@@ -367,8 +381,10 @@ struct Readme;
 mod cloth;
 mod error;
 mod fabric;
+mod garment;
 mod parameter;
 mod pins;
+mod proxy;
 mod skin;
 mod state;
 
@@ -418,11 +434,15 @@ pub mod prelude {
         error::ClothError,
         fabric::{ClothSprings, Fabric, FabricPreset, file::FabricFileError, handle::FabricHandle},
         frame::ColliderTeleportThreshold,
+        garment::{ClothPartOf, ClothParts},
         mesh_input::{ATTRIBUTE_WARP, ClothGrid},
         pins::{ATTRIBUTE_PIN, ClothEdge, PinGroup, PinPredicate, PinSelector, PinTarget, PinVertex, Pins},
+        proxy::ClothProxy,
         schedule::{ClothPlugin, ClothSystems},
         simulate::budget::ClothBudget,
-        skin::{ATTRIBUTE_CLOTH, ClothInertia, ClothMap, ClothSkin, ClothTeleport, TeleportMode},
+        skin::{
+            ATTRIBUTE_CLOTH, ClothInertia, ClothMap, ClothOutfit, ClothSkin, ClothTeleport, ClothWornBy, TeleportMode,
+        },
         solver::{Ellipsoid, LevelPass, MeshError, Solid, TaperedCapsule},
         state::{
             ClothAttachments, ClothFailed, ClothFellAsleep, ClothGrabbed, ClothGrabs, ClothGrip, ClothPoint,

@@ -2,11 +2,13 @@
 
 mod grid;
 mod job;
+mod join;
 mod skin;
 mod source;
 
 pub use grid::ClothGrid;
 pub(crate) use job::Jobs;
+pub(crate) use join::{Joined, Span, join, transform};
 pub(crate) use skin::{Skin, is_skinned};
 pub use source::ATTRIBUTE_WARP;
 pub(crate) use source::{read, read_uvs};

@@ -16,7 +16,7 @@ use crate::{
     attach, build, cloth, draw,
     fabric::{self, Fabric},
     frame::{self, ClothRun},
-    simulate,
+    simulate, skin,
     surroundings::{
         self, body,
         collider::{self, changes},
@@ -145,8 +145,9 @@ impl Plugin for ClothPlugin {
                     fabric::handle::copy_fabrics
                         .run_if(resource_exists::<Assets<Fabric>>)
                         .before(build::system::build_cloths),
-                    build::system::warn_without_mesh,
+                    (skin::outfit::put_on, build::garment::join_garments).chain().before(build::system::build_cloths),
                     build::system::build_cloths,
+                    build::proxy::build_proxies.after(build::system::build_cloths),
                     body::make::make_bodies,
                     (
                         cloth::timing::choose_passes,
@@ -172,7 +173,7 @@ impl Plugin for ClothPlugin {
             )
             .add_systems(
                 PostUpdate,
-                (attach::grabs::send_grab_events, draw::shape_cloths, draw::write_meshes)
+                (attach::grabs::send_grab_events, draw::shape_cloths, draw::shape_proxies, draw::write_meshes)
                     .chain()
                     .in_set(ClothSystems::Draw),
             )
@@ -183,7 +184,10 @@ impl Plugin for ClothPlugin {
             .add_observer(collider::on_collider_removed)
             .add_observer(body::on_body_removed)
             .add_observer(build::system::on_skeleton_removed)
+            .add_observer(build::system::on_part_removed)
+            .add_observer(build::proxy::on_proxy_removed)
             .add_observer(attach::pins::on_skin_removed)
+            .add_observer(skin::outfit::on_taken_off)
             .add_observer(cloth::update::on_springs_removed);
         #[cfg(feature = "mesh_colliders")]
         app.init_resource::<collider::mesh::PreparedMeshes>().add_systems(

@@ -1,9 +1,11 @@
 //! How far clothes may be from the body that wears them: `ClothSkin`, and what it makes of a mesh.
 
 mod inertia;
+pub(crate) mod outfit;
 pub(crate) mod teleport;
 
 pub use inertia::ClothInertia;
+pub use outfit::{ClothOutfit, ClothWornBy};
 pub use teleport::{ClothTeleport, TeleportMode};
 
 use bevy::{

@@ -8,7 +8,9 @@ use bevy_drape::{
     prelude::{ClothGrid, ClothSprings, Fabric},
     solver::{
         Elasticity, Material, Method, Particles, PinMotion, Scratch, StepContext, StepSettings, SubstepPolicy,
-        Topology, step,
+        Topology,
+        embedding::{Embedding, EmbeddingScratch},
+        step,
     },
 };
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -85,5 +87,18 @@ fn build_stage(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, hang, build_stage);
+/// A fine mesh of 12,321 points that follows a cloth of 28 x 28 particles.
+fn embedding(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("embedding");
+    let corners: Vec<Vec3A> = topology(28).rest.iter().copied().map(Vec3A::from).collect();
+    let points: Vec<Vec3A> = topology(111).rest.iter().map(|&point| Vec3A::from(point) + Vec3A::Y * 0.01).collect();
+    let triangles = topology(28).triangles;
+    group.bench_function("new", |bencher| bencher.iter(|| Embedding::new(&points, &corners, &triangles)));
+    let embedding = Embedding::new(&points, &corners, &triangles);
+    let (mut scratch, mut places) = (EmbeddingScratch::default(), Vec::new());
+    group.bench_function("place", |bencher| bencher.iter(|| embedding.place(&corners, &mut scratch, &mut places)));
+    group.finish();
+}
+
+criterion_group!(benches, hang, build_stage, embedding);
 criterion_main!(benches);

@@ -14,6 +14,7 @@ struct Readme;
 pub mod build;
 pub mod constraint;
 pub mod contact;
+pub mod embedding;
 pub mod explicit;
 pub mod force;
 pub mod geometry;

@@ -43,13 +43,13 @@ pub(crate) fn update_pins(
         let (mut targets, refused) = targets_by_particle(pins, source, &state.particle_of_vertex, &state.topology);
         if let Some(bound) = &mut skinning.0 {
             let skin = skin.cloned().unwrap_or_default();
-            if let Err(error) = skin.validate() {
-                warn!("cloth {entity} keeps the skin that it had: {error}");
-                continue;
+            match skin.validate() {
+                Ok(()) => bound.settings = skin,
+                Err(error) => warn!("cloth {entity} keeps the skin that it had: {error}"),
             }
-            let limits = skin.limits(source, &state.particle_of_vertex, state.particles.len());
+            let limits = bound.settings.limits(source, &state.particle_of_vertex, state.particles.len());
             limits.fix(&mut targets);
-            bound.limit(&limits.limits, [skin.pull, skin.pull_damping], &state.topology);
+            bound.limit(&limits.limits, &state.topology);
             state.is_disturbed = true;
         }
         match refused.first() {

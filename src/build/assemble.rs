@@ -10,6 +10,7 @@ use bevy::{
 
 use super::{
     candidate::{CandidateItem, Cause},
+    copies::{Wanted, make_copies, show_copies},
     plan::{Plan, PlanCache, is_large},
     skin::{at_scale_of, wear},
 };
@@ -35,7 +36,6 @@ pub(super) struct Built {
     input: StepInput,
     skinning: Skinning,
     binding: Arc<Binding>,
-    mesh: Mesh,
     positions: Vec<[f32; 3]>,
 }
 
@@ -48,7 +48,7 @@ impl CandidateItem<'_, '_> {
         cache: &mut PlanCache,
         skeletons: &Skeletons,
     ) -> Result<Option<Built>, ClothError> {
-        let skeleton = self.skeleton.as_deref().filter(|_| is_skinned(mesh)).cloned();
+        let skeleton = self.skeleton().filter(|_| is_skinned(mesh)).cloned();
         let bindposes = match skeleton.as_ref().map(|skeleton| skeletons.bindposes(skeleton)) {
             Some(None) => {
                 // Asked again until they are there.
@@ -115,8 +115,7 @@ impl CandidateItem<'_, '_> {
             }
             attachments.set_tethers(&mut state, tethers);
         }
-        let mesh = self.copy_of(mesh, skinning.0.is_some());
-        Ok(Some(Built { state, attachments, input, skinning, binding: plan.binding, mesh, positions: plan.positions }))
+        Ok(Some(Built { state, attachments, input, skinning, binding: plan.binding, positions: plan.positions }))
     }
 
     /// What is built of the cloth, with `to_world` as its rotation and scale by now.
@@ -210,17 +209,12 @@ impl CandidateItem<'_, '_> {
         commands: &mut Commands,
     ) {
         let entity = self.entity;
-        // A rebuilt cloth keeps its own mesh, with new contents; that of a copied entity is another's.
-        let own = self.own_mesh.map(|own| &own.drawn);
-        let drawn = match own.filter(|&own| cause != Cause::First && meshes.contains(own)) {
-            Some(own) => {
-                if let Some(mut mesh) = meshes.get_mut(own) {
-                    *mesh = built.mesh;
-                }
-                own.clone()
-            }
-            None => meshes.add(built.mesh),
-        };
+        let garment = self.garment.as_deref().filter(|_| self.mesh.is_none());
+        let wanted = Wanted::of(entity, &source, built.positions.len(), garment);
+        // A rebuilt cloth keeps its own meshes, with new contents; those of a copied entity are another's.
+        let own = self.own_mesh.filter(|_| cause != Cause::First);
+        let is_worn = built.skinning.0.is_some();
+        let drawn = make_copies(wanted, own, meshes, |mesh| self.copy_of(mesh, is_worn));
         self.grabs.release_all(&self.state);
         let reset_from = (cause != Cause::First).then_some(self.state.pose);
         *self.requests = Requests { reset_from, ..default() };
@@ -235,9 +229,7 @@ impl CandidateItem<'_, '_> {
         *self.status = ClothStatus::Ready;
         resolution::warn_if_coarse(entity, &self.fabric, self.springs.as_deref(), &self.state, &mut self.warned);
         margin::warn_if_too_large(entity, &self.state, &self.in_force, &mut self.warned);
-        if self.mesh.0 != drawn {
-            self.mesh.0 = drawn.clone();
-        }
+        show_copies(&drawn, self.mesh.as_deref_mut(), commands);
         let shape = Drawn::new(built.positions);
         let own_mesh = ClothMesh { source, drawn, binding: built.binding, shape };
         commands.entity(entity).try_insert(own_mesh);

@@ -1,6 +1,6 @@
 //! A cloth that may have to be built: whether it has, and what is said where it can't be.
 
-use bevy::{ecs::query::QueryData, mesh::skinning::SkinnedMesh, prelude::*};
+use bevy::{ecs::query::QueryData, mesh::skinning::SkinnedMesh, platform::collections::HashMap, prelude::*};
 
 use super::system::MeshNews;
 use crate::{
@@ -8,6 +8,7 @@ use crate::{
     draw::ClothMesh,
     error::ClothError,
     fabric::{ClothSprings, Fabric},
+    garment::Garment,
     pins::Pins,
     skin::ClothSkin,
     state::{
@@ -21,7 +22,8 @@ use crate::{
 #[query_data(mutable)]
 pub(crate) struct Candidate {
     pub(super) entity: Entity,
-    pub mesh: &'static mut Mesh3d,
+    pub mesh: Option<&'static mut Mesh3d>,
+    pub(super) garment: Option<Ref<'static, Garment>>,
     pub(super) cloth: Ref<'static, Cloth>,
     pub(super) fabric: Ref<'static, Fabric>,
     pub(super) springs: Option<Ref<'static, ClothSprings>>,
@@ -54,11 +56,23 @@ pub(super) enum Cause {
 impl CandidateReadOnlyItem<'_, '_> {
     /// Whether its `Mesh3d` isn't its own mesh: the cloth isn't built yet, or was given another.
     pub(super) fn has_foreign_mesh(&self) -> bool {
-        self.own_mesh.is_none_or(|own| own.drawn != self.mesh.0)
+        self.mesh.is_some_and(|mesh| self.own_mesh.is_none_or(|own| own.drawn_with(mesh.id()).is_none()))
     }
 }
 
 impl CandidateItem<'_, '_> {
+    /// The mesh that it is to be made of: the user's, or the one of all parts of a garment. None while there is none; of copies that are
+    /// drawn, `sources` are what they were made of.
+    pub(super) fn source(
+        &self,
+        sources: &HashMap<AssetId<Mesh>, Handle<Mesh>>,
+    ) -> Option<Result<Handle<Mesh>, ClothError>> {
+        let Some(mesh) = &self.mesh else { return self.garment.as_ref()?.joined.clone() };
+        let own = self.own_mesh.and_then(|own| own.drawn_with(mesh.id()));
+        let source = own.map(|drawn| &drawn.source).or_else(|| sources.get(&mesh.id()));
+        Some(Ok(source.unwrap_or(&mesh.0).clone()))
+    }
+
     /// Why the cloth has to be built now, if it has to.
     pub(super) fn cause(&self, source: AssetId<Mesh>, news: &MeshNews) -> Option<Cause> {
         let changed = news.changed.contains(&source) || self.pending.0.is_some();
@@ -70,7 +84,8 @@ impl CandidateItem<'_, '_> {
             || self.skin.as_ref().is_some_and(DetectChanges::is_changed)
             || self.skeleton.as_ref().is_some_and(DetectChanges::is_changed)
             || self.transform.is_changed()
-            || self.mesh.is_changed();
+            || self.mesh.as_ref().is_some_and(DetectChanges::is_changed)
+            || self.garment.as_ref().is_some_and(DetectChanges::is_changed);
         let reset = self.requests.reset;
         match &*self.status {
             ClothStatus::Waiting | ClothStatus::Building => Some(Cause::First),
@@ -79,11 +94,28 @@ impl CandidateItem<'_, '_> {
             ClothStatus::Ready | ClothStatus::Asleep => match self.own_mesh {
                 // Only its status has come from elsewhere, as from a scene.
                 None => Some(Cause::First),
-                // `Mesh3d` was replaced, be it by the mesh that the cloth was made from.
-                Some(own) if own.drawn != self.mesh.0 => Some(Cause::Again(ResetCause::Rebuilt)),
+                // `Mesh3d` was replaced, be it by the mesh that the cloth was made from, or the parts of a garment were.
+                Some(own) if !self.is_drawn_by(own, source) => Some(Cause::Again(ResetCause::Rebuilt)),
                 // Another skeleton, or one for the first time.
                 Some(_) => (changed || self.has_new_skeleton()).then_some(Cause::Again(ResetCause::Rebuilt)),
             },
+        }
+    }
+
+    /// Whether what is drawn of it is what was made of its mesh, which is `source`.
+    fn is_drawn_by(&self, own: &ClothMesh, source: AssetId<Mesh>) -> bool {
+        match &self.mesh {
+            Some(mesh) => own.drawn_with(mesh.id()).is_some(),
+            None => own.source.id() == source,
+        }
+    }
+
+    /// The skeleton of its mesh, or of all its parts.
+    pub(super) fn skeleton(&self) -> Option<&SkinnedMesh> {
+        let of_parts = || self.garment.as_ref()?.parts.first()?.skeleton.as_ref();
+        match &self.mesh {
+            Some(_) => self.skeleton.as_deref(),
+            None => of_parts(),
         }
     }
 

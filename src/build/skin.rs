@@ -40,7 +40,8 @@ impl CandidateItem<'_, '_> {
         limits.fix(targets);
         let held = |particle: usize| targets[particle] == PinTarget::Cloth;
         let mut bound = BoundSkin::new(skins, (joints, bindposes), held, skeletons).ok_or(lost(needed))?;
-        bound.limit(&limits.limits, [settings.pull, settings.pull_damping], &plan.topology);
+        bound.settings = settings;
+        bound.limit(&limits.limits, &plan.topology);
         self.warn_of_skin(&limits, targets);
         Ok(bound)
     }

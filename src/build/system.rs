@@ -13,21 +13,12 @@ use crate::{
     draw::{self, ClothMesh},
     error::ClothError,
     frame::Skeletons,
+    garment::{ClothPartOf, ClothParts, Garment},
     state::{
         ClothAttachments, ClothGrabs, ClothReport, ClothState, ClothStatus, PendingBuild, Requests, Skinning, Sleep,
         StepInput, Warned,
     },
 };
-
-/// Says so where `Cloth` is on an entity that has no mesh, as the root of a loaded scene has none.
-pub(crate) fn warn_without_mesh(cloths: Query<Entity, (Added<Cloth>, Without<Mesh3d>)>) {
-    for entity in &cloths {
-        warn!(
-            "cloth {entity} has no Mesh3d and waits for one; insert Cloth next to the Mesh3d, in a loaded scene on the \
-             entity that carries it"
-        );
-    }
-}
 
 /// Builds what waits, rebuilds what has changed, tries again what failed.
 pub(crate) fn build_cloths(
@@ -43,12 +34,18 @@ pub(crate) fn build_cloths(
     cache.update(|mesh| news.changed.contains(&mesh));
     let sources = sources(&candidates);
     for mut candidate in &mut candidates {
-        let source = match candidate.own_mesh {
-            Some(own) if own.drawn == candidate.mesh.0 => &own.source,
-            _ => sources.get(&candidate.mesh.id()).unwrap_or(&candidate.mesh.0),
+        let Some(source) = candidate.source(&sources) else {
+            candidate.wait_for_mesh();
+            continue;
+        };
+        let source = match source {
+            Ok(source) => source,
+            Err(error) => {
+                candidate.reject(error, &mut commands);
+                continue;
+            }
         };
         let Some(cause) = candidate.cause(source.id(), &news) else { continue };
-        let source = source.clone();
         let built = match meshes.get(&source) {
             Some(mesh) => candidate.build(source.id(), mesh, &mut cache, &skeletons),
             None => match assets.as_ref().map(|assets| assets.load_state(&source)) {
@@ -73,7 +70,7 @@ fn sources(candidates: &Query<Candidate>) -> HashMap<AssetId<Mesh>, Handle<Mesh>
         return HashMap::default();
     }
     let own_meshes = candidates.iter().filter_map(|candidate| candidate.own_mesh);
-    own_meshes.map(|own| (own.drawn.id(), own.source.clone())).collect()
+    own_meshes.flat_map(|own| &own.drawn).map(|drawn| (drawn.mesh.id(), drawn.source.clone())).collect()
 }
 
 /// What has become of mesh assets since the last frame.
@@ -105,11 +102,12 @@ pub(crate) fn on_cloth_removed(
     meshes: Option<ResMut<Assets<Mesh>>>,
 ) {
     if let (Ok(cloth), Some(mut meshes)) = (cloths.get(removed.entity), meshes) {
-        draw::release(&cloth.drawn, &mut meshes);
+        cloth.drawn.iter().for_each(|drawn| draw::release(&drawn.mesh, &mut meshes));
     }
     commands
         .entity(removed.entity)
         .try_remove::<(ClothMesh, ClothState, ClothAttachments, ClothGrabs, ClothReport, ClothStatus)>()
+        .try_remove::<(Garment, ClothParts)>()
         .try_remove::<(InForce, PendingBuild, Requests, Skinning, Sleep, StepInput, Warned)>();
 }
 
@@ -117,16 +115,36 @@ pub(crate) fn on_cloth_removed(
 /// beside, it would be an error of the renderer that ends the app.
 pub(crate) fn on_skeleton_removed(
     removed: On<Remove, SkinnedMesh>,
-    mut cloths: Query<(&ClothMesh, &mut Skinning, &mut Requests)>,
+    mut cloths: Query<(&ClothMesh, &mut Skinning, Option<&mut Requests>)>,
+    parts: Query<&ClothPartOf>,
     meshes: Option<ResMut<Assets<Mesh>>>,
 ) {
-    let (Ok((cloth, mut skinning, mut requests)), Some(mut meshes)) = (cloths.get_mut(removed.entity), meshes) else {
+    let entity = removed.entity;
+    let cloth = parts.get(entity).map_or(entity, |part| part.0);
+    let (Ok((cloth, mut skinning, requests)), Some(mut meshes)) = (cloths.get_mut(cloth), meshes) else {
         return;
     };
-    if skinning.0.take().is_some() {
+    if skinning.0.take().is_some()
+        && let Some(mut requests) = requests
+    {
         requests.reset = true;
-        if let Some(mesh) = meshes.get_mut(&cloth.drawn) {
-            draw::take_skin_off(mesh.into_inner());
-        }
+    }
+    if let Some(mesh) = cloth.drawn_by(entity).and_then(|drawn| meshes.get_mut(&drawn.mesh)) {
+        draw::take_skin_off(mesh.into_inner());
+    }
+}
+
+/// Leaves a plain mesh behind where it is no longer part of a garment.
+pub(crate) fn on_part_removed(
+    removed: On<Remove, ClothPartOf>,
+    parts: Query<&ClothPartOf>,
+    cloths: Query<&ClothMesh>,
+    meshes: Option<ResMut<Assets<Mesh>>>,
+) {
+    let cloth = parts.get(removed.entity).and_then(|part| cloths.get(part.0));
+    if let (Ok(cloth), Some(mut meshes)) = (cloth, meshes)
+        && let Some(drawn) = cloth.drawn_by(removed.entity)
+    {
+        draw::release(&drawn.mesh, &mut meshes);
     }
 }

@@ -3,18 +3,14 @@
 //! A vertex that is pinned to the skin keeps its place, joints and weights: it is drawn bit for bit as the body beside it. Any
 //! other is bound to one joint alone, the strongest of its own, and written with the inverse of what that does.
 
+use core::ops::Range;
+
 use bevy::{
     math::{Affine3A, Mat3A, Vec3A},
     prelude::*,
 };
 
-use crate::{
-    frame::joint_matrices,
-    mesh_input::Skin,
-    pins::PinTarget,
-    solver::build::weld::NO_PARTICLE,
-    state::{BoundSkin, HeldPin},
-};
+use crate::{frame::joint_matrices, mesh_input::Skin, solver::build::weld::NO_PARTICLE, state::BoundSkin};
 
 /// What takes vertices into bind space.
 #[derive(Clone, Debug, Default)]
@@ -54,18 +50,21 @@ impl BindSpace {
     }
 
     /// Takes note of which of so many particles are pinned to the skin.
-    pub fn note_pins(&mut self, pins: &[HeldPin], count: usize) {
-        let is_on_skin = |pin: &&HeldPin| pin.target == PinTarget::Cloth;
-        let on_skin = || pins.iter().filter(is_on_skin).map(|pin| pin.particle as usize);
+    pub fn note_pins(&mut self, on_skin: impl Iterator<Item = usize> + Clone, count: usize) {
         let is_known = self.is_pinned.len() == count
-            && on_skin().all(|particle| self.is_pinned[particle])
-            && on_skin().count() == self.is_pinned.iter().filter(|pinned| **pinned).count();
+            && on_skin.clone().all(|particle| self.is_pinned[particle])
+            && on_skin.clone().count() == self.is_pinned.iter().filter(|pinned| **pinned).count();
         if !is_known {
             self.is_pinned.clear();
             self.is_pinned.resize(count, false);
-            on_skin().for_each(|particle| self.is_pinned[particle] = true);
+            on_skin.for_each(|particle| self.is_pinned[particle] = true);
             self.is_new = true;
         }
+    }
+
+    /// Whether the skin alone draws a particle.
+    pub fn is_pinned(&self, particle: u32) -> bool {
+        self.is_pinned.get(particle as usize).copied().unwrap_or_default()
     }
 
     /// Whether the skin alone draws a vertex of a particle, or of none.
@@ -110,13 +109,15 @@ impl BindSpace {
         }
     }
 
-    /// Joints and weights by which each vertex is drawn.
+    /// Joints and weights by which each of some vertices is drawn.
     pub fn influences<'a>(
         &'a self,
         skin: &'a Skin,
         particle_of_vertex: &'a [u32],
+        span: &Range<usize>,
     ) -> impl Iterator<Item = ([u16; 4], [f32; 4])> + 'a {
-        skin.points().iter().zip(particle_of_vertex).map(|(point, &particle)| match self.is_skinned(particle) {
+        let vertices = skin.points().iter().zip(particle_of_vertex);
+        vertices.take(span.end).skip(span.start).map(|(point, &particle)| match self.is_skinned(particle) {
             true => (point.joints, point.weights),
             false => ([point.strongest(), 0, 0, 0], [1.0, 0.0, 0.0, 0.0]),
         })

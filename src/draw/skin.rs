@@ -11,6 +11,7 @@ use bevy::{
 };
 
 use super::mesh::ClothMesh;
+use crate::garment::ClothPartOf;
 
 /// What would deform an entity's mesh, if that had joints and morph targets. Comes back with a mesh that has.
 #[derive(Component, Clone, Debug, Default)]
@@ -91,7 +92,8 @@ pub(crate) struct Wearer {
 }
 
 /// There is something that may have to come off, or back.
-type HasSkin = Or<(With<TakenOff>, (With<ClothMesh>, Or<(With<SkinnedMesh>, With<MeshMorphWeights>)>))>;
+type HasSkin =
+    Or<(With<TakenOff>, (Or<(With<ClothMesh>, With<ClothPartOf>)>, Or<(With<SkinnedMesh>, With<MeshMorphWeights>)>))>;
 
 /// Lets entities have the skin and the morph weights that their meshes are made for, and no others.
 pub(crate) fn fit_skins(mut commands: Commands, mut wearers: Query<Wearer, HasSkin>, meshes: Res<Assets<Mesh>>) {

@@ -46,7 +46,7 @@ fn per_vertex(mesh: &Mesh, attribute: MeshVertexAttribute) -> Option<&VertexAttr
     mesh.try_attribute(attribute).ok().filter(|values| values.len() == count)
 }
 
-fn read_positions(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
+pub(super) fn read_positions(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
     match mesh.try_attribute(Mesh::ATTRIBUTE_POSITION) {
         Ok(VertexAttributeValues::Float32x3(values)) => Ok(values.iter().copied().map(Vec3::from).collect()),
         Err(MeshAccessError::ExtractedToRenderWorld) => Err(ClothError::NotInMainWorld),
@@ -54,7 +54,7 @@ fn read_positions(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
     }
 }
 
-fn read_triangles(mesh: &Mesh, vertex_count: usize) -> Result<Vec<[u32; 3]>, ClothError> {
+pub(super) fn read_triangles(mesh: &Mesh, vertex_count: usize) -> Result<Vec<[u32; 3]>, ClothError> {
     let indices: Vec<u32> = match mesh.try_indices() {
         Ok(Indices::U16(indices)) => indices.iter().map(|&i| i.into()).collect(),
         Ok(Indices::U32(indices)) => indices.clone(),

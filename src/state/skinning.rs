@@ -9,6 +9,7 @@ use crate::{
     frame::{Jump, Skeletons, is_invertible, joint_matrices},
     mesh_input::Skin,
     pins::PinTarget,
+    skin::ClothSkin,
     solver::{self, SkinLimit, SkinLimits, SkinPose, Topology},
     state::HeldPin,
 };
@@ -43,8 +44,8 @@ pub(crate) struct BoundSkin {
     limits: Option<SkinLimits>,
     /// Whether any particle has a backstop: nothing else asks for normals.
     has_backstop: bool,
-    /// Own frequency, Hz, and damping ratio of the pull.
-    pull: [f32; 2],
+    /// The settings in force: the latest that were valid.
+    pub settings: ClothSkin,
     /// Where the skin has the particles at the start and the end of the latest step, relative to `origin`.
     start: SkinPose,
     end: SkinPose,
@@ -79,7 +80,7 @@ impl BoundSkin {
             main: main.into(),
             limits: None,
             has_backstop: false,
-            pull: [0.0, 1.0],
+            settings: ClothSkin::default(),
             start: SkinPose::default(),
             end: SkinPose::default(),
             origin: Vec3::ZERO,
@@ -120,13 +121,12 @@ impl BoundSkin {
         self.place = place.unwrap_or(self.place);
     }
 
-    /// Sets how far particles may be from the skin, and the own frequency, Hz, and damping ratio of the pull towards it.
-    pub fn limit(&mut self, limits: &[SkinLimit], pull: [f32; 2], topology: &Topology) {
+    /// Sets how far particles may be from the skin, as its settings have it.
+    pub fn limit(&mut self, limits: &[SkinLimit], topology: &Topology) {
         let is_free = |limit: &SkinLimit| limit.max_distance == f32::INFINITY && limit.backstop.is_none();
-        let limits_any = pull[0] > 0.0 || !limits.iter().all(is_free);
+        let limits_any = self.settings.pull > 0.0 || !limits.iter().all(is_free);
         self.limits = limits_any.then(|| SkinLimits::new(limits, topology));
         self.has_backstop = limits.iter().any(|limit| limit.backstop.is_some());
-        self.pull = pull;
         // They were of another moment, where there were none since.
         self.end.normal.clear();
     }
@@ -177,7 +177,7 @@ impl BoundSkin {
 
     /// What holds the cloth in the coming step besides its pins.
     pub fn as_constraint(&self) -> Option<solver::Skin<'_>> {
-        let [pull, pull_damping] = self.pull;
+        let ClothSkin { pull, pull_damping, .. } = self.settings;
         let limits = self.limits.as_ref()?;
         Some(solver::Skin { pull, pull_damping, ..solver::Skin::new(limits, &self.start, &self.end) })
     }

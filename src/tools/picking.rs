@@ -14,7 +14,7 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{cloth::Cloth, pins::PinTarget, state::ClothGrip};
+use crate::{cloth::Cloth, garment::ClothPartOf, pins::PinTarget, proxy::ClothProxy, state::ClothGrip};
 
 mod hold;
 mod press;
@@ -39,7 +39,12 @@ pub struct ClothPickingPlugin;
 impl Plugin for ClothPickingPlugin {
     fn build(&self, app: &mut App) {
         // A cloth has two sides. One that was spawned before the plugin was added has to say so itself.
-        if let Err(error) = app.try_register_required_components::<Cloth, RayCastBackfaces>() {
+        let registered = [
+            app.try_register_required_components::<Cloth, RayCastBackfaces>(),
+            app.try_register_required_components::<ClothPartOf, RayCastBackfaces>(),
+            app.try_register_required_components::<ClothProxy, RayCastBackfaces>(),
+        ];
+        for error in registered.into_iter().filter_map(Result::err) {
             warn!("ClothPickingPlugin: cloth may be grabbed from its front only ({error}); add the plugin earlier");
         }
         app.init_resource::<ClothPickingSettings>()

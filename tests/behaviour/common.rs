@@ -87,6 +87,11 @@ pub fn undamped() -> Fabric {
     Fabric { damping: 0.0, drag: 0.0, lift: 0.0, ..default() }
 }
 
+/// A fabric whose folds show on cells of 15 cm: nothing is said of those.
+pub fn stiff() -> Fabric {
+    Fabric { bending_rigidity: 2e-3, ..default() }
+}
+
 pub fn get<C: Component>(app: &App, entity: Entity) -> &C {
     app.world().get::<C>(entity).unwrap_or_else(|| panic!("{entity} has no {}", core::any::type_name::<C>()))
 }

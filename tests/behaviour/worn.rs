@@ -15,7 +15,7 @@ use bevy_drape::prelude::*;
 use crate::{common::*, quiet::Quiet};
 
 /// Vertices along each side.
-const SIDE: usize = 9;
+pub const SIDE: usize = 9;
 
 /// Clothes on two joints, the second a child of the first, half a metre below it.
 struct Worn {
@@ -25,7 +25,7 @@ struct Worn {
 
 /// A sheet of 1 x 1 m below the origin: its upper part follows the first joint, its lower part more and more the second. With
 /// triangles of any shape, if it is `uneven`.
-fn dress(uneven: bool) -> Mesh {
+pub fn dress(uneven: bool) -> Mesh {
     let mut mesh: Mesh = ClothGrid::new(1.0, 1.0, SIDE as u32, SIDE as u32).into();
     let mut places = points(&mesh);
     for (i, place) in places.iter_mut().enumerate() {
@@ -342,4 +342,36 @@ fn a_skeleton_of_too_few_joints_is_refused_and_one_that_fits_is_taken() {
     get_mut::<SkinnedMesh>(&mut app, worn.cloth).joints = worn.joints.to_vec();
     run(&mut app, 2);
     assert_eq!(*get::<ClothStatus>(&app, worn.cloth), ClothStatus::Ready);
+}
+
+#[test]
+fn a_skin_that_is_out_of_range_leaves_the_one_before_and_pins_that_change_with_it_are_read() {
+    let mut quiet = Quiet::new();
+    let skin = ClothSkin { max_distance: ClothMap::Uniform(0.05), ..default() };
+    let worn = spawn_worn(&mut quiet.app, dress(true), Transform::from_xyz(0.0, 2.0, 0.0), skin);
+    let bad = ClothSkin { max_distance: ClothMap::Uniform(f32::NAN), ..default() };
+    let pins = Pins::edge(ClothEdge::Top).and(Pins::edge(ClothEdge::Left));
+    quiet.app.world_mut().entity_mut(worn.cloth).insert((bad, pins));
+    let said = quiet.run(40);
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert_eq!(pinned(&quiet.app, worn.cloth).len(), 2 * SIDE - 1);
+    let held = skinned(&quiet.app, &worn, &dress(true));
+    for (vertex, held) in (0..).zip(held) {
+        assert_close(place(&quiet.app, worn.cloth, vertex), held, 0.0501);
+    }
+}
+
+#[test]
+fn clothes_of_an_entity_of_no_size_are_drawn_on_their_skeleton() {
+    let mut app = headless();
+    let flat = Transform::from_scale(Vec3::new(1.0, 0.0, 1.0));
+    let worn = spawn_worn(&mut app, dress(true), Transform::from_xyz(0.0, 2.0, 0.0), flat);
+    for frame in 1..20 {
+        animate(&mut app, &worn, frame as f32 * STEP);
+        run(&mut app, 1);
+    }
+    let seen = skinned(&app, &worn, drawn(&app, worn.cloth));
+    for (vertex, seen) in (0..).zip(seen) {
+        assert_close(seen, place(&app, worn.cloth, vertex), 1e-4);
+    }
 }

@@ -15,7 +15,7 @@ use super::{
     shares::{Joint, capsules},
     sources::{Anatomy, Found},
 };
-use crate::{cloth::Cloth, surroundings::collider::ClothCollider};
+use crate::{cloth::Cloth, garment::ClothPartOf, surroundings::collider::ClothCollider};
 
 /// How long a scene may take to come before a body without a mesh is told of, s.
 const PATIENCE: f32 = 5.0;
@@ -23,12 +23,18 @@ const PATIENCE: f32 = 5.0;
 /// What has happened since the last frame that may give bodies other meshes.
 #[derive(SystemParam)]
 pub(crate) struct News<'w, 's> {
-    changed: Query<'w, 's, (), (With<SkinnedMesh>, Or<(Changed<Mesh3d>, Changed<SkinnedMesh>, Added<Cloth>)>)>,
+    changed: Query<
+        'w,
+        's,
+        (),
+        (With<SkinnedMesh>, Or<(Changed<Mesh3d>, Changed<SkinnedMesh>, Added<Cloth>, Changed<ClothPartOf>)>),
+    >,
     moved: Query<'w, 's, (), Changed<ChildOf>>,
     gone: (
         RemovedComponents<'w, 's, Mesh3d>,
         RemovedComponents<'w, 's, SkinnedMesh>,
         RemovedComponents<'w, 's, Cloth>,
+        RemovedComponents<'w, 's, ClothPartOf>,
         RemovedComponents<'w, 's, ChildOf>,
     ),
     meshes: MessageReader<'w, 's, AssetEvent<Mesh>>,
@@ -37,8 +43,9 @@ pub(crate) struct News<'w, 's> {
 impl News<'_, '_> {
     /// Whether bodies may have other meshes.
     fn are_any(&mut self) -> bool {
-        let (meshes, skeletons, cloths, places) = &mut self.gone;
-        let gone = [meshes.read().count(), skeletons.read().count(), cloths.read().count(), places.read().count()];
+        let (meshes, skeletons, cloths, parts, places) = &mut self.gone;
+        let (meshes, skeletons) = (meshes.read().count(), skeletons.read().count());
+        let gone = [meshes, skeletons, cloths.read().count(), parts.read().count(), places.read().count()];
         gone.iter().any(|&count| count > 0) || !self.changed.is_empty() || !self.moved.is_empty()
     }
 

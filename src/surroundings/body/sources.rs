@@ -18,7 +18,9 @@ use super::{
 use crate::{
     cloth::Cloth,
     frame::Skeletons,
+    garment::ClothPartOf,
     mesh_input::{self, Skin},
+    proxy::ClothProxy,
 };
 
 /// All that bodies are made of.
@@ -26,7 +28,12 @@ use crate::{
 pub(crate) struct Anatomy<'w, 's> {
     meshes: Res<'w, Assets<Mesh>>,
     assets: Option<Res<'w, AssetServer>>,
-    skinned: Query<'w, 's, (&'static Mesh3d, &'static SkinnedMesh), Without<Cloth>>,
+    skinned: Query<
+        'w,
+        's,
+        (&'static Mesh3d, &'static SkinnedMesh),
+        (Without<Cloth>, Without<ClothPartOf>, Without<ClothProxy>),
+    >,
     names: Query<'w, 's, &'static Name>,
     children: Query<'w, 's, &'static Children>,
     parents: Query<'w, 's, &'static ChildOf>,

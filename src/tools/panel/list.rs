@@ -38,7 +38,9 @@ fn tell_apart(found: &mut [(Entity, String)]) {
 /// Why a chosen cloth doesn't run.
 pub(super) fn trouble(world: &World, chosen: &[Entity]) -> Option<(&'static str, String)> {
     chosen.iter().find_map(|&cloth| match world.get::<ClothStatus>(cloth)? {
-        ClothStatus::Waiting => Some(("Waits for its mesh", "It is built once its Mesh3d has loaded.".into())),
+        ClothStatus::Waiting => {
+            Some(("Waits for its mesh", "It is built once its Mesh3d, or those below it, have loaded.".into()))
+        }
         ClothStatus::Building => Some(("Is being built", "Its mesh is large: that takes some frames.".into())),
         ClothStatus::Failed(error) => Some(("Can't be built", error.to_string())),
         ClothStatus::Ready | ClothStatus::Asleep => None,

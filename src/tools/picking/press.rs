@@ -17,7 +17,9 @@ use super::{
     hold::{Hold, is_pressed},
 };
 use crate::{
-    draw::ClothMesh,
+    draw::{ClothMesh, DrawnMesh},
+    garment::ClothPartOf,
+    proxy::ClothProxy,
     state::{ClothGrabs, ClothPoint, ClothState},
 };
 
@@ -37,6 +39,7 @@ pub(super) struct Sight<'w, 's> {
 pub(super) fn on_press(
     press: On<Pointer<Press>>,
     mut cloths: Query<(&ClothState, &mut ClothGrabs, &ClothMesh)>,
+    (parts, proxies): (Query<&ClothPartOf>, Query<&ClothProxy>),
     mut grabs: ResMut<PointerGrabs>,
     settings: Res<ClothPickingSettings>,
     mut sight: Sight,
@@ -51,12 +54,20 @@ pub(super) fn on_press(
     if sight.has_egui_at(press.pointer_location.position) {
         return;
     }
-    let Ok((state, mut held, mesh)) = cloths.get_mut(entity) else { return };
+    let whole = parts.get(entity).map_or(entity, |part| part.0);
+    let driver = proxies.get(whole).ok().map(|proxy| proxy.driver);
+    let cloth = driver.unwrap_or(whole);
+    let Ok((state, mut held, mesh)) = cloths.get_mut(cloth) else { return };
     let Some((hit, depth)) = sight.look(entity, pointer, camera) else { return };
-    let Some(point) = point_of(state, mesh, &hit) else { return };
+    let point = match driver {
+        // A fine mesh, and the coarse cloth beneath it.
+        Some(_) => state.nearest_point(hit.point),
+        None => mesh.drawn_by(entity).and_then(|drawn| point_of(state, mesh, drawn, &hit)),
+    };
+    let Some(point) = point else { return };
     let Some(grab) = held.grab(state, point, settings.grip) else { return };
     let target = press.pointer_location.target.clone();
-    grabs.holds.push(Hold { pointer, target, camera, cloth: entity, grab, depth, spread: None });
+    grabs.holds.push(Hold { pointer, target, camera, cloth, grab, depth, spread: None });
 }
 
 impl Sight<'_, '_> {
@@ -94,8 +105,8 @@ fn other_button(press: &PointerPress, button: PointerButton) -> bool {
 }
 
 /// The point of the cloth that a ray has hit on its drawn mesh.
-fn point_of(state: &ClothState, mesh: &ClothMesh, hit: &RayMeshHit) -> Option<ClothPoint> {
-    let vertices = mesh.binding.triangles.get(hit.triangle_index?)?;
+fn point_of(state: &ClothState, mesh: &ClothMesh, drawn: &DrawnMesh, hit: &RayMeshHit) -> Option<ClothPoint> {
+    let vertices = mesh.binding.triangles.get(drawn.span.first_triangle + hit.triangle_index?)?;
     let particles = vertices.map(|vertex| mesh.binding.particle_of_vertex[vertex as usize]);
     let weight_of = |particle: u32| {
         let corner = particles.iter().position(|&other| other == particle)?;

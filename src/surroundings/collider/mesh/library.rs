@@ -31,7 +31,7 @@ pub(crate) struct Library<'w, 's> {
 impl Library<'_, '_> {
     /// Whether a mesh is drawn for a cloth, and rewritten all the time.
     pub(super) fn is_of_cloth(&self, mesh: AssetId<Mesh>) -> bool {
-        self.cloths.iter().any(|cloth| cloth.drawn.id() == mesh)
+        self.cloths.iter().any(|cloth| cloth.drawn_with(mesh).is_some())
     }
 
     /// Pose and scale of an entity.
