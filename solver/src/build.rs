@@ -6,6 +6,7 @@ use crate::topology::Topology;
 
 mod bends;
 pub mod blend;
+mod cell_shares;
 mod cells;
 mod chart;
 mod coloring;

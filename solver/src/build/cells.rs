@@ -6,11 +6,30 @@ use bevy_math::Vec3;
 
 use super::edges::{Edges, HalfEdge};
 
-/// Largest |cos| of a corner of a cell: 70° to 110° count as nearly right.
-const MOST_COSINE: f32 = 0.342;
+/// How far from a rectangle a cell may be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CellBounds {
+    /// Largest |cos| of a corner.
+    most_cosine: f32,
+    /// Least cosine between the normals of its two triangles.
+    least_flatness: f32,
+}
 
-/// Least cosine between the normals of a cell's two triangles: a cell is nearly flat.
-const LEAST_FLATNESS: f32 = 0.9;
+impl CellBounds {
+    /// Near-rectangles: corners of 70° to 110°, and nearly flat.
+    pub const EVEN: Self = Self { most_cosine: 0.342, least_flatness: 0.9 };
+
+    /// Corners of 37° to 143°, folded by 60° at most: single cells of a sheet that is even [on the whole](Self::MOST_ON_AVERAGE), as at a
+    /// collar or along the side of a flare.
+    pub const UNEVEN: Self = Self { most_cosine: 0.8, least_flatness: 0.5 };
+
+    /// Largest |cos| of the corners of uneven cells, on average over all of them: 75° to 105°. Rows and columns bend as if they crossed
+    /// at right angles.
+    pub const MOST_ON_AVERAGE: f32 = 0.259;
+
+    /// Share of the triangles of an uneven sheet that are in even cells at least: with fewer, it isn't looked at.
+    pub const LEAST_EVEN: f32 = 0.5;
+}
 
 /// The cells of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,19 +52,31 @@ impl Cells {
         warp
     }
 
+    /// Whether a share (0..=1) of all triangles are in cells, or more.
+    pub fn hold(&self, share: f32) -> bool {
+        let inside = self.of_triangle.iter().flatten().count();
+        inside as f32 >= share * self.of_triangle.len() as f32
+    }
+
+    /// Largest |cos| of the corners of each, on average.
+    pub fn mean_skew(&self, rest: &[Vec3]) -> f32 {
+        let skew = |corners: &[u32; 4]| largest_cosine(&sides(corners.map(|i| rest[i as usize])));
+        self.corners.iter().map(skew).sum::<f32>() / self.corners.len().max(1) as f32
+    }
+
     /// None, of as many triangles: each is for itself.
     pub fn without_all(&self) -> Self {
         Self { corners: Vec::new(), of_triangle: vec![None; self.of_triangle.len()] }
     }
 }
 
-/// Pairs triangles into cells, the most rectangular pairs first; each triangle is in one cell at most.
-pub(crate) fn find(rest: &[Vec3], triangles: &[[u32; 3]], edges: &Edges) -> Cells {
+/// Pairs triangles into cells within `bounds`, the most rectangular pairs first; each triangle is in one cell at most.
+pub(crate) fn find(rest: &[Vec3], triangles: &[[u32; 3]], edges: &Edges, bounds: CellBounds) -> Cells {
     let mut candidates: Vec<(f32, &[HalfEdge])> = edges
         .iter()
         .filter_map(|sides| {
             let [one, other] = sides else { return None };
-            Some((skew(rest, corners_of(one, other))?, sides))
+            Some((skew(rest, corners_of(one, other), bounds)?, sides))
         })
         .collect();
     // Stable, so pairs that are equally rectangular keep the order of their edges.
@@ -70,16 +101,16 @@ fn corners_of(one: &HalfEdge, other: &HalfEdge) -> [u32; 4] {
 
 /// How far a quad is from a rectangle: the largest |cos| of its corners, rounded so that noise doesn't rank. None for a
 /// quad that is too far, folded or degenerate.
-fn skew(rest: &[Vec3], corners: [u32; 4]) -> Option<f32> {
+fn skew(rest: &[Vec3], corners: [u32; 4], bounds: CellBounds) -> Option<f32> {
     let p = corners.map(|i| rest[i as usize]);
     let skew = largest_cosine(&sides(p));
     // Most pairs of triangles: their turn comes before the costlier look at their normals.
-    if skew > MOST_COSINE {
+    if skew > bounds.most_cosine {
         return None;
     }
     let normal = |a: Vec3, b: Vec3, c: Vec3| (b - a).cross(c - a).normalize_or_zero();
     let flatness = normal(p[0], p[1], p[2]).dot(normal(p[0], p[2], p[3]));
-    (flatness >= LEAST_FLATNESS).then_some((skew * 1e3).round())
+    (flatness >= bounds.least_flatness).then_some((skew * 1e3).round())
 }
 
 /// Directions of a quad's sides, around it.

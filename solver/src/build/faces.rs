@@ -41,7 +41,10 @@ pub(super) fn face(rest: &[Vec3], particles: [u32; 3], warp: Vec3) -> Option<Fac
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::build::{cells, edges::Edges};
+    use crate::build::{
+        cells::{self, CellBounds},
+        edges::Edges,
+    };
 
     #[test]
     fn a_face_takes_one_step_along_warp_and_weft_whatever_its_shape() {
@@ -49,7 +52,7 @@ mod tests {
         let normal = (rest[1] - rest[0]).cross(rest[2] - rest[0]).normalize();
         let warp = Vec3::Y.reject_from_normalized(normal).normalize();
         let triangles = [[0, 1, 2]];
-        let cells = cells::find(&rest, &triangles, &Edges::new(3, &triangles));
+        let cells = cells::find(&rest, &triangles, &Edges::new(3, &triangles), CellBounds::EVEN);
         let (faces, batches) = find(&rest, &triangles, &cells, &[warp]);
         let step = |[b, c]: [f32; 2]| (rest[1] - rest[0]) * b + (rest[2] - rest[0]) * c;
         assert!(matches!(&batches[..], [batch] if *batch == (0..1)));
@@ -63,7 +66,7 @@ mod tests {
     fn triangles_of_a_cell_are_no_faces_and_no_run_has_a_particle_twice() {
         let rest = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, Vec3::new(2.5, 0.5, 0.0), Vec3::NEG_Y];
         let triangles = [[0, 1, 2], [0, 2, 3], [1, 4, 2], [1, 5, 4]];
-        let cells = cells::find(&rest, &triangles, &Edges::new(rest.len(), &triangles));
+        let cells = cells::find(&rest, &triangles, &Edges::new(rest.len(), &triangles), CellBounds::EVEN);
         let (faces, batches) = find(&rest, &triangles, &cells, &[Vec3::Y; 4]);
         assert_eq!(faces.len(), 2);
         assert_eq!(batches, [0..1, 1..2]);

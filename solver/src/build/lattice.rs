@@ -225,6 +225,7 @@ pub(super) fn of_rectangle(
             (0, 2) => ([0.0; 2], ends(plate.along_row((row, column + 1)))),
             (2, 0) => ([0.0; 2], ends(plate.along_column((row + 1, column)))),
             (1, 1) => ([shear, 0.0], ends(plate.twist(at))),
+            (1, -1) => ([shear, 0.0], [0.0; 2]),
             _ => ([warp + weft, -shear], [0.0; 2]),
         };
         Link { rest, shares, weights }

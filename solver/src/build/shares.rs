@@ -1,20 +1,9 @@
-//! What each spring carries of a sheet: the springs of a cell together have the sheet's moduli.
-//!
-//! ```text
-//!        a                    along a:  C b/a - G a/b, half of it from each of two cells
-//!    o-------o                along b:  C a/b - G b/a, likewise
-//!    |  \ /  | b              diagonal: G (a² + b²) / (2 a b)
-//!    |  / \  |
-//!    o-------o
-//! ```
-//!
-//! From the energy of a cell under strains along a, along b and of shear: a spring of stiffness k and direction n takes
-//! k L² (n·ε n)²/2. Both diagonals together take G for the shear, and by the way G a²/b² and G b²/a² of what is along the
-//! sides; the sides take the rest. On squares, whatever their size, that is C - G and G.
+//! What each spring carries of a sheet: the springs of a cell together have the sheet's [moduli](super::cell_shares), each side of it
+//! half of its part from each of the two cells beside it.
 
 use bevy_math::Vec3;
 
-use super::cells::Cells;
+use super::{cell_shares::CellShares, cells::Cells};
 use crate::{Spring, SpringKind};
 
 /// Gives the springs along and across each cell their share of it. `springs` are sorted by kind and lower end; `warp` is
@@ -36,18 +25,19 @@ pub(super) fn share_out(
             continue;
         }
         let is_warp = along.dot(warp).abs() * b >= across.dot(warp).abs() * a;
-        let side = |is_warp: bool, a: f32, b: f32| {
-            let part = 0.5 * b / a;
-            if is_warp { [part, 0.0, -0.5 * a / b] } else { [0.0, part, -0.5 * a / b] }
+        let CellShares { sides: [of_along, of_across], diagonals } =
+            CellShares::new(a, b, along.dot(across) / (4.0 * a * b));
+        let side = |is_warp: bool, [part, shear]: [f32; 2]| {
+            if is_warp { [part, 0.0, shear] } else { [0.0, part, shear] }
         };
-        let diagonal = [0.0, 0.0, (a * a + b * b) / (2.0 * a * b)];
+        let [falling, rising] = diagonals.map(|shear| [0.0, 0.0, shear]);
         for (kind, p, q, share) in [
-            (SpringKind::Structural, i, j, side(is_warp, a, b)),
-            (SpringKind::Structural, l, k, side(is_warp, a, b)),
-            (SpringKind::Structural, i, l, side(!is_warp, b, a)),
-            (SpringKind::Structural, j, k, side(!is_warp, b, a)),
-            (SpringKind::Shear, i, k, diagonal),
-            (SpringKind::Shear, j, l, diagonal),
+            (SpringKind::Structural, i, j, side(is_warp, of_along)),
+            (SpringKind::Structural, l, k, side(is_warp, of_along)),
+            (SpringKind::Structural, i, l, side(!is_warp, of_across)),
+            (SpringKind::Structural, j, k, side(!is_warp, of_across)),
+            (SpringKind::Shear, i, k, falling),
+            (SpringKind::Shear, j, l, rising),
         ] {
             if let Some(number) = find.spring(springs, kind, p, q) {
                 for (sum, part) in springs[number].1.share.iter_mut().zip(share) {

@@ -6,7 +6,7 @@ use bevy_math::{Vec2, Vec3};
 
 use super::{
     bends,
-    cells::{self, Cells},
+    cells::{self, CellBounds, Cells},
     chart, coloring,
     edges::Edges,
     faces,
@@ -49,8 +49,18 @@ impl Shape {
             return Err(MeshError::Empty);
         }
         let edges = Edges::new(rest.len(), &triangles);
-        let cells = cells::find(rest, &triangles, &edges);
-        let rectangle = lattice::find(&cells, rest.len());
+        let even = cells::find(rest, &triangles, &edges, CellBounds::EVEN);
+        let rectangle = lattice::find(&even, rest.len());
+        let uneven = || {
+            let cells = cells::find(rest, &triangles, &edges, CellBounds::UNEVEN);
+            let is_even_on_the_whole = cells.mean_skew(rest) <= CellBounds::MOST_ON_AVERAGE;
+            Some((lattice::find(&cells, rest.len()).filter(|_| is_even_on_the_whole)?, cells))
+        };
+        let is_in_question = rectangle.is_none() && even.hold(CellBounds::LEAST_EVEN);
+        let (rectangle, cells) = match is_in_question.then(uneven).flatten() {
+            Some((rectangle, cells)) => (Some(rectangle), cells),
+            None => (rectangle, even),
+        };
         Ok(Self { triangles, numbers, slivers, edges, cells, rectangle })
     }
 }

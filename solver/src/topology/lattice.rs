@@ -29,8 +29,8 @@ pub struct Lattice {
     pub falling: Vec<Lane>,
     /// Rest lengths of the diagonals from the next column to the next row, m.
     pub rising: Vec<Lane>,
-    /// Parts of G that both diagonals of a cell have, no unit.
-    pub cell_shares: Vec<Lane>,
+    /// Parts of G that the falling and the rising diagonal of a cell have, no unit.
+    pub diagonal_shares: [Vec<Lane>; 2],
     /// Weights of the twist of each cell: its energy is B/2 times the squared length of the weight times the sum of the
     /// places of two opposite corners less those of the others.
     pub twist: Vec<Lane>,
@@ -80,7 +80,7 @@ pub struct StrandSet {
 pub struct Link {
     /// Rest length, m; zero for none.
     pub rest: f32,
-    /// Parts of C and -G along a strand, and that of G in a cell, no unit.
+    /// Parts of C and -G along a strand, and that of G along a diagonal, no unit.
     pub shares: [f32; 2],
     /// Weights of the bend in the middle of the way from two steps along a strand, or of the cell's twist, no unit.
     pub weights: [f32; 2],
@@ -156,7 +156,10 @@ impl Lattice {
             along_columns,
             falling: cells(&|at| link(at, (1, 1)).rest),
             rising: cells(&|(row, column)| link((row, column + 1), (1, -1)).rest),
-            cell_shares: cells(&|at| link(at, (1, 1)).shares[0]),
+            diagonal_shares: [
+                cells(&|at| link(at, (1, 1)).shares[0]),
+                cells(&|(row, column)| link((row, column + 1), (1, -1)).shares[0]),
+            ],
             twist: cells(&|at| link(at, (1, 1)).weights[0]),
             curl: None,
         }

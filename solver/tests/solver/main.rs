@@ -35,3 +35,4 @@ mod strands;
 mod substep_reasons;
 mod tethers;
 mod topology;
+mod uneven;

@@ -166,10 +166,10 @@ impl RowPairs<'_> {
     #[inline(always)]
     fn solve_bias<S: Simd, const DAMPED: bool>(&self, simd: S, grid: &mut GridView, shear_scratch: &mut ShearScratch) {
         let Scaled { k, c } = self.cell_material.spring;
-        let Lattice { rows: stride, falling, rising, cell_shares, .. } = self.lattice;
-        let shares = &cell_shares[self.first..];
-        let diagonals = |rest| ShearStrands { rows: self.rows, rest, shares, stride: *stride, spring: [k, c] };
-        diagonals(&falling[self.first..]).solve::<S, false, DAMPED>(simd, grid, shear_scratch);
-        diagonals(&rising[self.first..]).solve::<S, true, DAMPED>(simd, grid, shear_scratch);
+        let Lattice { rows: stride, falling, rising, diagonal_shares: [of_falling, of_rising], .. } = self.lattice;
+        let first = self.first;
+        let diagonals = |rest, shares| ShearStrands { rows: self.rows, rest, shares, stride: *stride, spring: [k, c] };
+        diagonals(&falling[first..], &of_falling[first..]).solve::<S, false, DAMPED>(simd, grid, shear_scratch);
+        diagonals(&rising[first..], &of_rising[first..]).solve::<S, true, DAMPED>(simd, grid, shear_scratch);
     }
 }
