@@ -85,9 +85,9 @@ pub struct Cloth {
     ///
     /// `None` is for as many as [`max_strain`](Self::max_strain) needs, 4 by default for implicit steps; with
     /// [`ClothSprings`](crate::prelude::ClothSprings) on a mesh without rows and columns at least 8, three for each ten vertices
-    /// along a side, and up to 32 where triangles are narrow; at least 8 near obstacles, in a hand and without tethers; half as
-    /// many more with `self_collision`, 16 at least; three times as many, 32 at least, near solids with edges, and thin
-    /// ones, and twice that near tips. Implicit steps take no more near edges, and 32 near tips. With [`ClothSolver::Xpbd`] for 8.
+    /// along a side, and up to 32 where triangles are narrow; at least 8 near obstacles, in a hand and without tethers, but 6
+    /// where rows and columns are near the capsules of a [`ClothBody`](crate::prelude::ClothBody) alone; half as many more with
+    /// `self_collision`, 16 at least; three times as many, 32 at least, near solids with edges, and thin ones, and twice that near tips. Implicit steps take no more near edges, and 32 near tips. With [`ClothSolver::Xpbd`] for 8.
     #[reflect(@Parameter::within("", (1.0, 10_000.0), (1.0, 64.0)).whole().entered((1.0, 1000.0)))]
     pub substeps: Option<u32>,
     /// Multigrid passes of [`ClothSolver::Strands`] in each substep: stride and iterations of each coarse level. Only cloth

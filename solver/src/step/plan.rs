@@ -1,5 +1,7 @@
 //! What is known of a cloth's step before its substeps begin: how many there are, and why.
 
+use bevy_math::Vec3A;
+
 use crate::{
     constraint::{attach::grab, implicit::ImplicitSheet},
     contact::{self, feature},
@@ -11,6 +13,10 @@ use crate::{
     step::report::SubstepReason,
     topology::{Topology, level::LevelPass},
 };
+
+/// Speed at which limbs sweep past a cloth from which on they count as any obstacle, m/s. Legs that run in it go to and fro, and are far
+/// below that; a body that jumps up or lands isn't.
+const SWEPT: f32 = 0.5;
 
 /// What is known of a cloth's step before its substeps begin.
 pub(super) struct Plan<'a> {
@@ -51,6 +57,11 @@ impl<'a> Plan<'a> {
             (!is_tethered, SubstepReason::Untethered),
         ];
         let some = lesser_risks.into_iter().find_map(|(is_there, reason)| is_there.then_some(reason));
+        let are_others_held = is_on_body || !ctx.grabs.is_empty() || !is_tethered;
+        let are_limbs = !is_implicit
+            && !are_others_held
+            && near.clone().all(|obstacle| obstacle.is_rough)
+            && sweep(near.clone(), particles, dt) < SWEPT * dt;
         let is_solved_along = |obstacle: &Obstacle| is_implicit && obstacle.body.is_none();
         let sharpest = |is_solved: bool| {
             let some = near.clone().filter(|obstacle| is_solved_along(obstacle) == is_solved);
@@ -60,6 +71,7 @@ impl<'a> Plan<'a> {
             (Some((Sharpness::Tip, wanted)), _) => ContactRisk::Tip(wanted),
             (Some((Sharpness::Edge, wanted)), _) => ContactRisk::Edge(wanted),
             (None, true) => ContactRisk::SelfCollision,
+            (None, _) if some == Some(SubstepReason::Obstacle) && are_limbs => ContactRisk::Limbs,
             (None, _) if some.is_some() => ContactRisk::Some,
             (None, _) => ContactRisk::None,
         };
@@ -97,4 +109,17 @@ impl<'a> Plan<'a> {
         let substeps = stability.needed.min(most);
         Some(Self { dt, is_near, longest_edge, levels, substeps, reason, stability })
     }
+}
+
+/// How far what is `near` goes past the free particles of a cloth within a step of `dt` seconds, on the whole, m.
+fn sweep<'a>(near: impl Iterator<Item = &'a Obstacle>, particles: &Particles, dt: f32) -> f32 {
+    let ways = near.map(|obstacle| obstacle.end.translation - obstacle.start.translation);
+    let free = particles.velocity.iter().zip(&particles.inverse_mass).filter(|(_, w)| **w > 0.0);
+    let own = mean(free.map(|(velocity, _)| *velocity * dt));
+    mean(ways).distance(own)
+}
+
+fn mean(ways: impl Iterator<Item = Vec3A>) -> Vec3A {
+    let (sum, count) = ways.fold((Vec3A::ZERO, 0.0), |(sum, count), way| (sum + way, count + 1.0));
+    sum / f32::max(count, 1.0)
 }

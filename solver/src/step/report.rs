@@ -86,7 +86,7 @@ impl SubstepReason {
     pub(super) fn of_risk(risk: ContactRisk, some: Self) -> Self {
         match risk {
             ContactRisk::None => Self::Strain,
-            ContactRisk::Some => some,
+            ContactRisk::Limbs | ContactRisk::Some => some,
             ContactRisk::SelfCollision => Self::SelfCollision,
             ContactRisk::Edge(_) | ContactRisk::EdgeSolvedAlong(_) => Self::SharpEdge,
             ContactRisk::Tip(_) | ContactRisk::TipSolvedAlong(_) => Self::SharpTip,

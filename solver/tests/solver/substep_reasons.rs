@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy_math::{
     Isometry3d, Mat3A, Quat, Vec3, Vec3A,
-    primitives::{Cone, Cuboid, Sphere},
+    primitives::{Capsule3d, Cone, Cuboid, Sphere},
 };
 use drape_solver::{
     Body, DeformedPoints, Elasticity, Material, MeshShape, Method, Moduli, Obstacle, Shape, Solid, SubstepReason,
@@ -52,6 +52,38 @@ fn what_raises_the_number_is_the_reason() {
     assert_eq!(reason_of(above(Solid::Cuboid(Cuboid::from_length(0.4)), 0.2)), SubstepReason::SharpEdge);
     assert_eq!(reason_of(above(Solid::Cone(Cone { radius: 0.1, height: 0.4 }), 0.2)), SubstepReason::SharpTip);
     assert_eq!(reason_of(hung().like_a_game(Method::Explicit)), SubstepReason::Stability);
+}
+
+#[test]
+fn limbs_raise_the_number_less_than_other_obstacles_where_there_are_rows_and_columns() {
+    // A thin one, as an arm.
+    let arm = |is_rough: bool| {
+        let capsule = Solid::Capsule(Capsule3d::new(0.04, 0.3));
+        Obstacle { is_rough, ..Obstacle::still(capsule, Isometry3d::from_translation(Vec3::NEG_Y * 0.2)) }
+    };
+    let ball = Obstacle::still(Solid::Sphere(Sphere::new(5.0)), Isometry3d::from_translation(Vec3::NEG_Y * 5.001));
+    let steps = |bed: Bed, obstacles: Vec<Obstacle>| {
+        let mut bed = Bed { obstacles, ..bed };
+        bed.step(STEP);
+        let report = bed.step(STEP);
+        (report.substeps, report.reason)
+    };
+    assert_eq!(steps(hung(), vec![arm(true)]), (6, SubstepReason::Obstacle));
+    let shove = |speed: f32| {
+        let mut arm = arm(true);
+        arm.start.translation -= Vec3A::X * speed * STEP;
+        let mut bed = Bed { obstacles: vec![arm], ..hung() };
+        bed.step(STEP).substeps
+    };
+    assert_eq!([0.2, 1.0].map(shove), [6, 8], "it sweeps past");
+    assert_eq!(steps(hung(), vec![arm(true), ball]), (8, SubstepReason::Obstacle));
+    assert_eq!(steps(hung(), vec![arm(false)]).1, SubstepReason::SharpTip, "a cell is larger than it");
+    let untethered = Bed { tethers: None, ..hung() };
+    assert_eq!(steps(untethered, vec![arm(true)]), (8, SubstepReason::Obstacle));
+    let cotton = Moduli::from_strips([4000.0; 2], 50.0, [0.0; 2], 1.0).expect("a sheet");
+    let material = Material::bare(0.15, Elasticity::Moduli(cotton));
+    let implicit = Bed::new(uneven(Grid::new(1.0, 1.0, 12, 12).lying(), 0.25), material).like_a_game(Method::Strands);
+    assert_eq!(steps(implicit, vec![arm(true)]), (8, SubstepReason::Obstacle));
 }
 
 #[test]

@@ -25,7 +25,7 @@ const LIMITED_WORK: Naming = naming(
 );
 const BY_HAND: Naming = naming(
     "Substeps by hand",
-    "Sets the number of substeps. Without it, they follow from the largest strain, and are 8 at least near obstacles.",
+    "Sets the number of substeps. Without it, they follow from the largest strain, and are 8 at least near obstacles, 6 near limbs.",
 );
 const LEVELS: Naming = naming(
     "Coarse levels",
