@@ -1,6 +1,7 @@
 //! Pinned particles follow their targets.
 
 use bevy::{
+    ecs::{query::QueryData, system::NonSendMarker},
     math::{Affine3A, Vec3A},
     prelude::*,
 };
@@ -8,7 +9,7 @@ use bevy::{
 use super::skeleton;
 use crate::{
     draw::ClothMesh,
-    frame::{Jump, Poses, Skeletons, Steps},
+    frame::{self, ClothRun, Jump, Poses, Skeletons, Steps},
     pins::{PinTarget, Pins, targets_by_particle},
     skin::{ClothInertia, ClothSkin, ClothTeleport},
     solver::{PinMotion, build::blend::BlendWeightBuild},
@@ -146,77 +147,96 @@ pub(crate) fn advance_builds(
     }
 }
 
+/// All of a cloth that has to do with its targets.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct Follower {
+    entity: Entity,
+    status: &'static ClothStatus,
+    state: &'static mut ClothState,
+    attachments: &'static mut ClothAttachments,
+    grabs: &'static mut ClothGrabs,
+    requests: &'static mut Requests,
+    input: &'static mut StepInput,
+    skinning: &'static mut Skinning,
+    teleport: Option<&'static ClothTeleport>,
+    inertia: Option<&'static ClothInertia>,
+    warned: &'static mut Warned,
+}
+
 /// Plans the motion of every pinned particle over the coming step. A cloth that jumps, or whose pins all do, jumps along
 /// first.
 pub(crate) fn follow_targets(
-    mut cloths: Query<(
-        Entity,
-        &ClothStatus,
-        &mut ClothState,
-        &mut ClothAttachments,
-        &mut ClothGrabs,
-        &mut Requests,
-        &mut StepInput,
-        (&mut Skinning, Option<&ClothTeleport>, Option<&ClothInertia>, &mut Warned),
-    )>,
+    mut cloths: Query<Follower>,
     skeletons: Skeletons,
     time: Res<Time>,
+    run: Res<ClothRun>,
+    _main_thread: NonSendMarker,
 ) {
-    let poses = &skeletons.poses;
-    for (
+    let pass = skeletons.poses.pass();
+    let are_stepped = cloths.iter_mut().filter(|cloth| cloth.status.is_running() && cloth.input.pass == pass);
+    // Of those without a skeleton, few are worth a task each.
+    let (worn, others): (Vec<_>, Vec<_>) = are_stepped.partition(|cloth| cloth.skinning.0.is_some());
+    let dt = time.delta_secs();
+    others.into_iter().for_each(|cloth| follow(cloth, &skeletons, dt));
+    frame::for_each(worn, run.parallel, |cloth| follow(cloth, &skeletons, dt));
+}
+
+/// Plans the motion of one cloth's pins over the coming step of `dt` seconds.
+fn follow(cloth: FollowerItem, skeletons: &Skeletons, dt: f32) {
+    let FollowerItem {
         entity,
-        status,
         mut state,
         mut attachments,
         mut grabs,
         mut requests,
         mut input,
-        (mut skinning, teleport, inertia, mut warned),
-    ) in &mut cloths
-    {
-        if !status.is_running() || input.pass != poses.pass() {
-            continue;
-        }
-        let (state, attachments, grabs) = (&mut *state, &mut *attachments, grabs.bypass_change_detection());
-        let carrier = skinning.carrier(entity);
-        for anchor in &mut attachments.anchors {
-            anchor.follow(carrier, poses);
-        }
-        let (mut jump, mut taken_along) = (None, None);
-        let pose = match &mut skinning.0 {
-            Some(bound) => {
-                bound.read_joints(&skeletons);
-                bound.pose()
-            }
-            None => skeletons.pose(entity),
-        };
-        if let Some(pose) = pose {
-            state.is_disturbed |= state.pose != pose;
-            jump = take_asked_jump((state, attachments, grabs), &mut requests, pose);
-            if let Some(bound) = skinning.0.as_mut().filter(|_| jump.is_none()) {
-                let (parts, rules) = ((&mut *state, &mut *attachments, &mut *grabs), (teleport, inertia));
-                (jump, taken_along) = skeleton::come_along(parts, bound, rules, pose, time.delta_secs());
-            }
-            state.pose = pose;
-            state.follow_scale(attachments);
-        }
-        if jump.is_none() {
-            jump = PinAnchor::common_jump(&attachments.anchors);
-            if let Some(jump) = &jump {
-                state::carry(state, attachments, grabs, jump);
-            }
-        }
-        if jump.is_some() {
-            attachments.anchors.iter_mut().for_each(PinAnchor::forget_way);
-        }
-        // Obstacles that go with the skeleton come from where the cloth was taken along to, too.
-        input.jump = jump.or(taken_along);
-        state::stay_near(state, attachments, grabs);
-        if let Some(bound) = &mut skinning.0 {
-            skeleton::advance(entity, bound, state, jump.is_some(), teleport, &mut warned);
-        }
-        plan_motions(state, attachments, &mut input, &skinning);
+        mut skinning,
+        teleport,
+        inertia,
+        mut warned,
+        ..
+    } = cloth;
+    let poses = &skeletons.poses;
+    let (state, attachments, grabs) = (&mut *state, &mut *attachments, grabs.bypass_change_detection());
+    let carrier = skinning.carrier(entity);
+    for anchor in &mut attachments.anchors {
+        anchor.follow(carrier, poses);
     }
+    let (mut jump, mut taken_along) = (None, None);
+    let pose = match &mut skinning.0 {
+        Some(bound) => {
+            bound.read_joints(skeletons);
+            bound.pose()
+        }
+        None => skeletons.pose(entity),
+    };
+    if let Some(pose) = pose {
+        state.is_disturbed |= state.pose != pose;
+        jump = take_asked_jump((state, attachments, grabs), &mut requests, pose);
+        if let Some(bound) = skinning.0.as_mut().filter(|_| jump.is_none()) {
+            let (parts, rules) = ((&mut *state, &mut *attachments, &mut *grabs), (teleport, inertia));
+            (jump, taken_along) = skeleton::come_along(parts, bound, rules, pose, dt);
+        }
+        state.pose = pose;
+        state.follow_scale(attachments);
+    }
+    if jump.is_none() {
+        jump = PinAnchor::common_jump(&attachments.anchors);
+        if let Some(jump) = &jump {
+            state::carry(state, attachments, grabs, jump);
+        }
+    }
+    if jump.is_some() {
+        attachments.anchors.iter_mut().for_each(PinAnchor::forget_way);
+    }
+    // Obstacles that go with the skeleton come from where the cloth was taken along to, too.
+    input.jump = jump.or(taken_along);
+    state::stay_near(state, attachments, grabs);
+    if let Some(bound) = &mut skinning.0 {
+        skeleton::advance(entity, bound, state, jump.is_some(), teleport, &mut warned);
+    }
+    plan_motions(state, attachments, &mut input, &skinning);
 }
 
 /// Does the jump to `pose` that has been asked for, and tells of the one that a reset has been.
