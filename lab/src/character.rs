@@ -35,6 +35,9 @@ pub struct Character {
     /// Without capsules on the body
     #[arg(long)]
     no_body: bool,
+    /// Substeps of all clothes, instead of those that they choose
+    #[arg(long)]
+    substeps: Option<u32>,
     /// Steps all cloths on one thread
     #[arg(long)]
     single_threaded: bool,
@@ -132,7 +135,8 @@ impl Character {
             let free =
                 world.get::<Mesh3d>(part).and_then(|mesh| world.resource::<Assets<Mesh>>().get(mesh).map(Free::of));
             let free = free.unwrap_or_default();
-            world.entity_mut(part).insert((Cloth::default(), fabric, skin, free, WornBy(character)));
+            let cloth = Cloth { substeps: self.substeps, ..default() };
+            world.entity_mut(part).insert((cloth, fabric, skin, free, WornBy(character)));
         }
     }
 }
@@ -143,9 +147,9 @@ struct Seen {
     strains: Vec<f32>,
     substeps: u32,
     particles: usize,
-    /// Free vertices inside of their own body, over all frames, and how deep the deepest was, m.
+    /// Free vertices inside of their own body, over all frames, and how deep the deepest was, m; negative outside, none without a body.
     inside: usize,
-    deepest: f32,
+    deepest: Option<f32>,
     /// Mean time of a step, by what is worn, µs.
     step_times: BTreeMap<String, Vec<f64>>,
 }
@@ -162,8 +166,9 @@ impl Seen {
             self.strains.extend(free.strains(state));
             self.substeps = self.substeps.max(report.latest().map_or(0, |latest| latest.substeps));
             for depth in free.depths(state, &body) {
-                self.inside += 1;
-                self.deepest = self.deepest.max(depth);
+                self.inside += usize::from(depth > free::DEEP);
+                self.deepest =
+                    Some(self.deepest.map_or(depth, |deepest| deepest.max(depth))).filter(|_| !body.is_empty());
             }
             times.entry(name.as_str()).or_default().push(report.step_time().as_secs_f64() * 1e6);
         }

@@ -11,8 +11,8 @@ use bevy_drape::{
     solver::{Obstacle, Shape},
 };
 
-/// Particles deeper than this inside of a capsule count, m.
-const DEEP: f32 = 0.0005;
+/// What is deeper than this inside of a capsule counts, m.
+pub const DEEP: f32 = 0.0005;
 
 /// What of a garment is free: vertices that may be farther from their skin than two edges are long, and sides between two of these.
 /// Strain of others says how the skin stretches, and what is painted holds them where the body is.
@@ -51,10 +51,10 @@ impl Free {
         sides.filter_map(move |&([a, b], length)| Some(place(state, a)?.distance(place(state, b)?) / length - 1.0))
     }
 
-    /// How deep each vertex is inside of what it is deepest in, m: those that are deep.
+    /// How deep each vertex is inside of what it is deepest in, m; negative outside.
     pub fn depths<'a>(&'a self, state: &'a ClothState, body: &'a [&Obstacle]) -> impl Iterator<Item = f32> + 'a {
         let depth = |place: Vec3| body.iter().map(|part| depth(part, place)).fold(f32::NEG_INFINITY, f32::max);
-        self.vertices.iter().filter_map(move |&vertex| place(state, vertex).map(depth)).filter(|&depth| depth > DEEP)
+        self.vertices.iter().filter_map(move |&vertex| place(state, vertex).map(depth))
     }
 }
 
