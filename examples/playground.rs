@@ -3,6 +3,7 @@
 //! ```text
 //! cargo run --all-features --example playground
 //! cargo run --all-features --example playground -- --capture captures --frames 240 --every 240
+//! cargo run --all-features --example playground -- --panel
 //! ```
 
 mod common;
@@ -16,12 +17,27 @@ use bevy::{
 };
 use bevy_drape::{
     debug::{ClothDebugPlugin, ClothDiagnosticsPlugin},
-    panel::ClothPanelPlugin,
+    panel::{ClothPanel, ClothPanelPlugin},
     prelude::*,
 };
+use clap::Parser;
+
+/// A curtain in the wind, cloths on a ball and a box, and a flag.
+#[derive(Parser)]
+#[command(version, args_override_self = true)]
+struct Command {
+    /// Open the panel from the beginning
+    #[arg(long)]
+    panel: bool,
+
+    #[command(flatten)]
+    shared: common::Arguments,
+}
 
 fn main() -> AppExit {
-    common::app(
+    let Command { panel, shared } = Command::parse();
+    common::app_with(
+        shared,
         "bevy_drape playground",
         "Drag cloth, or the view   Right drag: shift   Wheel: zoom   R: reset   W: wind   Space: pause   F1: panel",
     )
@@ -30,6 +46,7 @@ fn main() -> AppExit {
     .add_systems(Startup, (common::spawn_scenery, setup))
     .add_systems(FixedUpdate, slide_rings)
     .add_systems(Update, (reset, calm, pause, common::rest_camera_while_dragging))
+    .add_systems(Update, open_panel.run_if(move || panel))
     .run()
 }
 
@@ -173,6 +190,13 @@ fn calm(keys: Res<ButtonInput<KeyCode>>, mut winds: Query<&mut Wind>, mut calmed
         for mut wind in &mut winds {
             core::mem::swap(&mut wind.velocity, &mut calmed);
         }
+    }
+}
+
+/// Opens the panel once time goes on: while a capture loads, its picture is too small for a window.
+fn open_panel(mut panel: ResMut<ClothPanel>, time: Res<Time>, mut is_done: Local<bool>) {
+    if time.delta_secs() > 0.0 && !core::mem::replace(&mut *is_done, true) {
+        panel.open = true;
     }
 }
 

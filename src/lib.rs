@@ -222,10 +222,11 @@
 //!
 //! # Panel
 //!
-//! [`ClothPanelPlugin`](panel::ClothPanelPlugin) opens a window with F1: every constant with its unit, solver, pins and
-//! wind; pause, single step and slow motion; time, stretch and energy; advice where the settings ask for more than the
-//! substeps can solve. *Revert* goes back to what was loaded, *Copy as Rust* puts the components' code on the
-//! clipboard. [`cloth_panel`](panel::cloth_panel) draws the same into a window of a game's own. All components work in
+//! [`ClothPanelPlugin`](panel::ClothPanelPlugin) opens a window with F1. At its top, and always in sight: the time of a step with its
+//! history, why it took so many substeps, stretch and energy; pause, single step and slow motion. Below, advice where the settings
+//! ask for more than the substeps can solve, and the settings: every constant of the fabric with its unit, by what it acts on, and
+//! the source of a preset; solver, timing and pins; skin, inertia and teleports of clothes; wind, and the budget of all cloth.
+//! *Revert* goes back to what was loaded, *Copy as Rust* puts the components' code on the clipboard. [`cloth_panel`](panel::cloth_panel) draws the same into a window of a game's own. All components work in
 //! bevy-inspector-egui as well.
 //!
 //! ```no_run

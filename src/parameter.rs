@@ -3,7 +3,7 @@
 
 use bevy::{
     prelude::*,
-    reflect::{PartialReflect, ReflectRef, Typed, structs::Struct},
+    reflect::{PartialReflect, ReflectRef, Typed, enums::VariantInfo, structs::Struct},
 };
 
 use crate::error::ClothError;
@@ -11,7 +11,8 @@ use crate::error::ClothError;
 /// The smallest number above zero.
 const ABOVE_ZERO: f32 = f32::from_bits(1);
 
-/// A number of a component: its unit, what it may be, and how it is shown and turned. A reflected attribute of its field:
+/// A number of a component: its unit, what it may be, and how it is shown and turned. A reflected attribute of its field, or of the
+/// field of an enum's variant:
 ///
 /// ```ignore
 /// /// Areal density in kg/m².
@@ -92,6 +93,14 @@ impl Parameter {
         Self { title: Some(title), ..self }
     }
 
+    /// An error for a value with a number that isn't accepted.
+    fn check(&self, value: &dyn PartialReflect, name: impl FnOnce() -> String) -> Result<(), ClothError> {
+        match self.refused(value) {
+            None => Ok(()),
+            Some(number) => Err(ClothError::InvalidParameter { name: name(), value: number, rule: self.rule(value) }),
+        }
+    }
+
     /// The first number of a field's value that isn't accepted.
     fn refused(&self, value: &dyn PartialReflect) -> Option<f32> {
         let is_refused = |number: &f32| !(self.accepted.0..=self.accepted.1).contains(number);
@@ -107,7 +116,7 @@ impl Parameter {
         let rule = match self.accepted {
             (f32::MIN, f32::MAX) => "finite".into(),
             (ABOVE_ZERO, f32::MAX) => format!("greater than 0{unit}"),
-            (least, f32::MAX) => format!("{least}{unit} or greater"),
+            (least, f32::MAX | f32::INFINITY) => format!("{least}{unit} or greater"),
             (least, most) => format!("{least} to {most}{unit}"),
         };
         let is_option = matches!(value.reflect_ref(), ReflectRef::Enum(_));
@@ -131,12 +140,32 @@ pub(crate) fn check_parameters<C: Struct + Typed>(
 ) -> Result<(), ClothError> {
     let fields = C::type_info().as_struct().into_iter().flat_map(|info| info.iter().enumerate());
     for (i, field) in fields.filter(|(_, field)| is_checked(field.name())) {
-        let (Some(parameter), Some(value)) = (field.get_attribute::<Parameter>(), component.field_at(i)) else {
-            continue;
-        };
-        if let Some(number) = parameter.refused(value) {
-            let name = format!("{}::{}", C::short_type_path(), field.name());
-            return Err(ClothError::InvalidParameter { name, value: number, rule: parameter.rule(value) });
+        let Some(value) = component.field_at(i) else { continue };
+        let name = || format!("{}::{}", C::short_type_path(), field.name());
+        match field.get_attribute::<Parameter>() {
+            Some(parameter) => parameter.check(value, name)?,
+            None => check_variant(value, name)?,
+        }
+    }
+    Ok(())
+}
+
+/// The same for the fields of the variant that `value` is, if it is one.
+fn check_variant(value: &dyn PartialReflect, name: impl Fn() -> String) -> Result<(), ClothError> {
+    let ReflectRef::Enum(chosen) = value.reflect_ref() else { return Ok(()) };
+    let info = value.get_represented_type_info().and_then(|info| info.as_enum().ok()?.variant(chosen.variant_name()));
+    for (i, value) in (0..chosen.field_len()).filter_map(|i| Some((i, chosen.field_at(i)?))) {
+        match info {
+            Some(VariantInfo::Struct(info)) => {
+                let Some(field) = info.field_at(i) else { continue };
+                let name = || format!("{}, {}", name(), field.name());
+                field.get_attribute::<Parameter>().map_or(Ok(()), |parameter| parameter.check(value, name))?;
+            }
+            Some(VariantInfo::Tuple(info)) => {
+                let parameter = info.field_at(i).and_then(|field| field.get_attribute::<Parameter>());
+                parameter.map_or(Ok(()), |parameter| parameter.check(value, &name))?;
+            }
+            Some(VariantInfo::Unit(_)) | None => {}
         }
     }
     Ok(())
@@ -156,10 +185,24 @@ mod tests {
         count: Option<u32>,
         #[reflect(@Parameter::finite("m/s", (0.0, 1.0)))]
         velocity: Vec3,
+        shape: Shape,
         free: f32,
     }
 
-    const GOOD: Sample = Sample { length: 1.0, slack: None, count: None, velocity: Vec3::ZERO, free: f32::NAN };
+    #[derive(Reflect, Default)]
+    enum Shape {
+        #[default]
+        Point,
+        Ball(#[reflect(@Parameter::positive("m", (0.1, 1.0)))] f32),
+        Ring {
+            radius: f32,
+            #[reflect(@Parameter::within("m", (0.0, f32::INFINITY), (0.0, 1.0)))]
+            width: f32,
+        },
+    }
+
+    const GOOD: Sample =
+        Sample { length: 1.0, slack: None, count: None, velocity: Vec3::ZERO, shape: Shape::Point, free: f32::NAN };
 
     fn refusal(sample: &Sample) -> String {
         check_parameters(sample, |_| true).map_or_else(|error| error.to_string(), |()| String::new())
@@ -171,6 +214,8 @@ mod tests {
             GOOD,
             Sample { length: f32::from_bits(1), slack: Some(0.0), count: Some(1), ..GOOD },
             Sample { length: f32::MAX, slack: Some(f32::MAX), count: Some(9), velocity: Vec3::MIN, ..GOOD },
+            Sample { shape: Shape::Ball(0.1), ..GOOD },
+            Sample { shape: Shape::Ring { radius: f32::NAN, width: f32::INFINITY }, ..GOOD },
         ] {
             assert_eq!(refusal(&sample), "");
         }
@@ -190,6 +235,11 @@ mod tests {
             (
                 Sample { velocity: Vec3::new(0.0, -f32::INFINITY, 1.0), ..GOOD },
                 "Sample::velocity is -inf, and it has to be finite;",
+            ),
+            (Sample { shape: Shape::Ball(0.0), ..GOOD }, "Sample::shape is 0, and it has to be greater than 0 m;"),
+            (
+                Sample { shape: Shape::Ring { radius: 1.0, width: f32::NAN }, ..GOOD },
+                "Sample::shape, width is NaN, and it has to be 0 m or greater;",
             ),
         ] {
             assert!(refusal(&sample).starts_with(expected), "{}", refusal(&sample));

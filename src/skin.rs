@@ -54,14 +54,14 @@ pub struct ClothSkin {
     /// Largest distance of each vertex from where its skeleton has it, m. As painted in [`ATTRIBUTE_CLOTH`] by default, and
     /// infinite where nothing is.
     pub max_distance: ClothMap,
-    /// How far beneath the animated surface the backstop begins, m, 0 or more. 0 to 0.05. None, the default, for no backstop.
-    #[reflect(@Parameter::not_negative("m", (0.0, 0.1)).entered((0.0, 10.0)).shown_as("mm", 1e3))]
+    /// How far beneath the animated surface the backstop begins, m, 0 or more, `None` by default, for no backstop. 0 to 0.05.
+    #[reflect(@Parameter::not_negative("m", (0.0, 0.1)).entered((0.0, 10.0)).shown_as("mm", 1e3).titled("Backstop depth"))]
     pub backstop: Option<f32>,
     /// Radius of the backstop's ball, m, greater than 0, 0.1 by default: about that of the limb, so that cloth can slip off
     /// sideways. 10 is all but a plane.
     #[reflect(@Parameter::positive("m", (0.02, 1.0)).logarithmic(0.02).entered((0.001, 100.0)))]
     pub backstop_radius: f32,
-    /// Own frequency of a spring that draws each vertex to where its skeleton has it, Hz, 0 or more. 0, the default, for none; 0.5 to 5.
+    /// Own frequency of a spring that draws each vertex to where its skeleton has it, Hz, 0 or more, 0 by default, for none. 0.5 to 5.
     /// The same for any fabric and frame rate. The cloth's weight hangs through by g / (2 pi f)², 6 cm at 2 Hz.
     #[reflect(@Parameter::not_negative("Hz", (0.0, 10.0)).entered((0.0, 1000.0)))]
     pub pull: f32,
@@ -92,13 +92,19 @@ impl Default for ClothSkin {
 pub enum ClothMap {
     /// As [`ATTRIBUTE_CLOTH`] has it. What is painted below 0, or isn't finite, counts as 0, with one warning.
     Painted {
-        /// Factor on what is painted, 0 or more.
+        /// Factor on what is painted, no unit, 0 or more, 1 by default.
+        #[reflect(@Parameter::within("", (0.0, f32::INFINITY), (0.0, 2.0)).entered((0.0, 1000.0)).titled("Paint scale"))]
         scale: f32,
-        /// For meshes that nothing is painted on, 0 or more, infinity for free.
+        /// For meshes that nothing is painted on, m, 0 or more, infinity by default, for free.
+        #[reflect(@Parameter::within("m", (0.0, f32::INFINITY), (0.0, 1.0)).entered((0.0, 1000.0)).titled("Without paint"))]
         missing: f32,
     },
-    /// The same for all.
-    Uniform(f32),
+    /// The same for all, m, 0 or more, infinity for free.
+    Uniform(
+        /// For every vertex, m, 0 or more: 0 is fixed to the skeleton. 0.1 to 1 for a cape.
+        #[reflect(@Parameter::within("m", (0.0, f32::INFINITY), (0.0, 1.0)).entered((0.0, 1000.0)).titled("Everywhere"))]
+        f32,
+    ),
 }
 
 impl Default for ClothMap {
@@ -133,19 +139,7 @@ impl ClothSkin {
     ///
     /// [`ClothError::InvalidParameter`] with the first field that is out of its range.
     pub fn validate(&self) -> Result<(), ClothError> {
-        check_parameters(self, |_| true)?;
-        let numbers = match self.max_distance {
-            ClothMap::Painted { scale, missing } => [("scale", scale), ("missing", missing)],
-            ClothMap::Uniform(distance) => [("distance", distance); 2],
-        };
-        match numbers.into_iter().find(|(_, number)| number.is_nan() || *number < 0.0) {
-            None => Ok(()),
-            Some((name, value)) => Err(ClothError::InvalidParameter {
-                name: format!("ClothSkin::max_distance, {name}"),
-                value,
-                rule: "0 or more".into(),
-            }),
-        }
+        check_parameters(self, |_| true)
     }
 
     /// The limits of `count` particles, of which each vertex of `mesh` is one: the least of its vertices'.

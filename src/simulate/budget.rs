@@ -6,6 +6,7 @@ use bevy::prelude::*;
 
 use crate::{
     frame::{PerPass, Steps},
+    parameter::Parameter,
     state::{Allowance, ClothReport, ClothState, ClothStatus, StepInput},
 };
 
@@ -30,7 +31,9 @@ use crate::{
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, Clone, PartialEq)]
 pub struct ClothBudget {
-    /// Time in ms for each step, greater than 0. 1 to 4 in a game at 60 Hz. What isn't a positive number cuts nothing.
+    /// Time in ms for each step, greater than 0, infinite by default, which cuts nothing, as whatever isn't a positive number does.
+    /// 1 to 4 in a game at 60 Hz.
+    #[reflect(@Parameter::positive("ms", (0.1, 16.0)).logarithmic(0.1).entered((0.001, 1e6)).titled("Time for a step"))]
     pub milliseconds: f32,
 }
 
@@ -42,7 +45,7 @@ impl Default for ClothBudget {
 
 impl ClothBudget {
     /// Time for a step, s; none where nothing is to be cut.
-    fn seconds(self) -> Option<f32> {
+    pub(crate) fn seconds(self) -> Option<f32> {
         (self.milliseconds > 0.0 && self.milliseconds.is_finite()).then_some(self.milliseconds * 1e-3)
     }
 }

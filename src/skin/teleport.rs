@@ -20,16 +20,16 @@ use crate::{
 pub struct ClothTeleport {
     /// What becomes of the clothes, [`TeleportMode::Carry`] by default.
     pub mode: TeleportMode,
-    /// Longest way in m that is no teleport, however fast. 0.5 by default.
+    /// Longest way in m that is no teleport, however fast, 0 or more, 0.5 by default.
     #[reflect(@Parameter::not_negative("m", (0.0, 5.0)).entered((0.0, 1e6)))]
     pub distance: f32,
-    /// Highest speed in m/s that is no teleport, however far. 40 by default.
+    /// Highest speed in m/s that is no teleport, however far, 0 or more, 40 by default.
     #[reflect(@Parameter::not_negative("m/s", (0.0, 100.0)).entered((0.0, 1e6)))]
     pub speed: f32,
-    /// Largest turn in rad that is no teleport, however fast. 1 by default.
+    /// Largest turn in rad that is no teleport, however fast, 0 or more, 1 by default.
     #[reflect(@Parameter::not_negative("rad", (0.0, 3.2)).entered((0.0, 100.0)))]
     pub angle: f32,
-    /// Highest speed of turning in rad/s that is no teleport, however far. 40 by default.
+    /// Highest speed of turning in rad/s that is no teleport, however far, 0 or more, 40 by default.
     #[reflect(@Parameter::not_negative("rad/s", (0.0, 100.0)).entered((0.0, 1e6)))]
     pub angular_speed: f32,
 }

@@ -13,8 +13,10 @@
 mod actions;
 mod advice;
 mod aim;
+mod beside;
+mod budget;
 mod code;
-mod contact;
+mod collision;
 mod control;
 #[cfg(feature = "debug")]
 mod debug;
@@ -26,17 +28,20 @@ mod loaded;
 mod memory;
 mod model;
 mod number;
+mod pick;
 mod readings;
 mod settings;
 mod solver;
 mod springs;
 mod surroundings;
 mod watch;
+mod wording;
+mod worn;
 
 use bevy::{ecs::system::SystemState, prelude::*, time::TimeSystems};
 use bevy_egui::{
     EguiContexts, EguiPlugin, EguiPrimaryContextPass,
-    egui::{self, Frame, Margin, Ui, UiBuilder, Window},
+    egui::{self, Frame, Margin, ScrollArea, Ui, UiBuilder, Window},
     input::EguiWantsInput,
 };
 
@@ -44,8 +49,13 @@ use crate::schedule::{ClothSystems, run_after_steps};
 use memory::Memory;
 use model::Model;
 
-/// Size of the window when it first opens, in points. A smaller screen makes it smaller.
-const SIZE: [f32; 2] = [312.0, 620.0];
+/// Width of the window when it first opens, in points.
+const WIDTH: f32 = 340.0;
+/// Its height is that of the screen but for so much, within these limits, in points.
+const BESIDE: f32 = 76.0;
+const HEIGHT: (f32, f32) = (300.0, 860.0);
+/// From this height on, in points, only the settings scroll, and readings stay in sight.
+const ROOMY: f32 = 480.0;
 
 /// Adds the panel, and for its window bevy_egui's `EguiPlugin` where that isn't there yet.
 ///
@@ -98,7 +108,8 @@ impl Plugin for ClothPanelPlugin {
         }
         app.insert_resource(ClothPanel { open: self.open, ..default() })
             .add_systems(First, memory::begin_frame.after(TimeSystems))
-            .add_systems(PreUpdate, loaded::remember.after(ClothSystems::Prepare));
+            .add_systems(PreUpdate, loaded::remember.after(ClothSystems::Prepare))
+            .add_systems(PostUpdate, memory::note_step.after(ClothSystems::Late).before(ClothSystems::Draw));
         if let Some(key) = self.key {
             app.add_systems(Update, toggle(key));
         }
@@ -131,25 +142,30 @@ fn show_window(world: &mut World, contexts: &mut SystemState<EguiContexts>) {
     let context = contexts.get_mut(world).ok().and_then(|mut contexts| contexts.ctx_mut().ok().cloned());
     let Some(context) = context else { return };
     let mut is_open = true;
-    Window::new("Cloth")
-        .id(egui::Id::new("bevy_drape panel"))
-        .default_size(SIZE)
-        .vscroll(true)
-        .open(&mut is_open)
-        // Beside the scroll bar.
-        .show(&context, |ui| {
-            Frame::new().inner_margin(Margin { right: 6, ..default() }).show(ui, |ui| cloth_panel(ui, world))
-        });
+    let height = (context.content_rect().height() - BESIDE).clamp(HEIGHT.0, HEIGHT.1);
+    Window::new("Cloth").id(egui::Id::new("bevy_drape panel")).default_size([WIDTH, height]).open(&mut is_open).show(
+        &context,
+        |ui| {
+            let is_roomy = ui.available_height() >= ROOMY;
+            let mut draw = |ui: &mut Ui| draw(ui, world, is_roomy);
+            if is_roomy { draw(ui) } else { scroll(ui, draw) }
+        },
+    );
     if !is_open {
         world.resource_mut::<ClothPanel>().open = false;
     }
 }
 
 /// Draws the panel's content and does what its controls say. For a game's own egui; [`ClothPanelPlugin`] has to be there
-/// all the same, without its window.
+/// all the same, without its window. It doesn't scroll by itself: put it into a scroll area where it may be higher than what it is in.
 ///
 /// Edits act in the next step. A component is written only where a value has been changed.
 pub fn cloth_panel(ui: &mut Ui, world: &mut World) {
+    draw(ui, world, false);
+}
+
+/// Draws it, with settings that scroll below a head that doesn't where that `is_roomy`.
+fn draw(ui: &mut Ui, world: &mut World, is_roomy: bool) {
     // Taken out, not borrowed: what an edit sets off may look at the panel.
     let mut panel = world.get_resource_or_init::<ClothPanel>();
     let mut memory = core::mem::take(&mut panel.bypass_change_detection().memory);
@@ -169,9 +185,23 @@ pub fn cloth_panel(ui: &mut Ui, world: &mut World) {
         watch::measure(world, &mut memory);
     }
     model.readings.clone_from(&memory.readings);
+    // What comes and goes mustn't push a control about that is held.
+    if ui.ctx().dragged_id().is_none() {
+        memory.advice.clone_from(&memory.readings.advice);
+    }
+    model.advice.clone_from(&memory.advice);
     let before = model.settings.clone();
     let id = ui.id().with("bevy_drape panel");
-    ui.scope_builder(UiBuilder::new().id(id), |ui| show(ui, &mut model, &memory));
+    ui.scope_builder(UiBuilder::new().id(id), |ui| {
+        if is_roomy {
+            beside_scroll_bar(ui, |ui| show_head(ui, &mut model, &memory));
+            ui.separator();
+            scroll(ui, |ui| show_settings(ui, &mut model));
+        } else {
+            show_head(ui, &mut model, &memory);
+            show_settings(ui, &mut model);
+        }
+    });
     let choice = model.choice;
     model.write(world, &before, &mut memory);
 
@@ -182,22 +212,46 @@ pub fn cloth_panel(ui: &mut Ui, world: &mut World) {
     }
 }
 
-fn show(ui: &mut Ui, model: &mut Model, memory: &Memory) {
+/// A part of the window that scrolls.
+fn scroll(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| beside_scroll_bar(ui, content));
+}
+
+/// Leaves room for the scroll bar, which floats over what it scrolls.
+fn beside_scroll_bar(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    Frame::new().inner_margin(Margin { right: 8, ..default() }).show(ui, content);
+}
+
+/// What one looks at while one edits.
+fn show_head(ui: &mut Ui, model: &mut Model, memory: &Memory) {
     actions::show_choice(ui, model);
     actions::show_status(ui, model);
-    actions::show_clock(ui, model);
-    if !model.chosen.is_empty() {
-        actions::show_buttons(ui, model);
-        fabric::show(ui, model);
-        springs::show(ui, model);
-        solver::show(ui, model);
-        contact::show(ui, model);
-    }
-    surroundings::show_surroundings(ui, model);
-    surroundings::show_wind(ui, model);
     if !model.chosen.is_empty() {
         readings::show(ui, model, &memory.step_times);
     }
-    #[cfg(feature = "debug")]
-    debug::show(ui, model);
+    actions::show_clock(ui, model);
+    if !model.chosen.is_empty() {
+        actions::show_buttons(ui, model);
+    }
+}
+
+fn show_settings(ui: &mut Ui, model: &mut Model) {
+    control::group(ui, "settings", |ui| {
+        if !model.chosen.is_empty() {
+            actions::show_advice(ui, model);
+            fabric::show(ui, model);
+            springs::show(ui, model);
+            worn::show(ui, model);
+            solver::show(ui, model);
+            collision::show(ui, model);
+        }
+        surroundings::show_surroundings(ui, model);
+        surroundings::show_wind(ui, model);
+        budget::show(ui, model);
+        if !model.chosen.is_empty() {
+            readings::show_mesh(ui, &model.readings);
+        }
+        #[cfg(feature = "debug")]
+        debug::show(ui, model);
+    });
 }

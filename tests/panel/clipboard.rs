@@ -6,38 +6,19 @@ use bevy_egui::egui::accesskit::Role;
 
 use crate::common::*;
 
-/// Presses an entry of the menu and gives what is on the clipboard right then.
-fn copy(desk: &mut Desk, entry: &str) -> Option<String> {
-    let at = desk.control(Role::Button, "Copy ⏷").rect().center();
-    desk.click_at(at);
-    let at = desk.control(Role::Button, entry).rect().center();
-    press(desk, at)
-}
-
-fn press(desk: &mut Desk, at: bevy_egui::egui::Pos2) -> Option<String> {
-    desk.harness.hover_at(at);
-    desk.harness.step();
-    desk.harness.drag_at(at);
-    desk.harness.step();
-    let button = bevy_egui::egui::PointerButton::Primary;
-    desk.harness.event(bevy_egui::egui::Event::PointerButton { pos: at, button, pressed: false, modifiers: default() });
-    desk.harness.step();
-    desk.copied()
-}
-
 #[test]
 fn the_edited_cloth_is_copied_as_rust() {
     let mut app = app();
     spawn_cloth(&mut app, "Curtain", ());
     let mut desk = Desk::new(app);
-    assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some("Cloth::default(),\nFabric::default(),\n"));
+    assert_eq!(desk.copy("Copy as Rust").as_deref(), Some("Cloth::default(),\nFabric::default(),\n"));
     desk.click(Role::CheckBox, "Substeps by hand");
     desk.type_value("Substeps", "12");
     desk.type_value("Density", "0.2");
     desk.type_value("Bending rigidity", "5");
     let expected =
         "Cloth { substeps: Some(12), ..default() },\nFabric { density: 0.2, bending_rigidity: 5e-6, ..default() },\n";
-    assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some(expected));
+    assert_eq!(desk.copy("Copy as Rust").as_deref(), Some(expected));
     // What was copied, as code.
     let _: (Cloth, Fabric) =
         (Cloth { substeps: Some(12), ..default() }, Fabric { density: 0.2, bending_rigidity: 5e-6, ..default() });
@@ -50,7 +31,7 @@ fn springs_are_copied_as_rust_where_there_are_any() {
     let mut desk = Desk::new(app);
     desk.type_value("Bend", "5");
     let expected = "Cloth::default(),\nFabric::default(),\nClothSprings { bend_stiffness: 5.0, ..default() },\n";
-    assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some(expected));
+    assert_eq!(desk.copy("Copy as Rust").as_deref(), Some(expected));
     // What was copied, as code.
     let _: (Cloth, Fabric, ClothSprings) =
         (Cloth::default(), Fabric::default(), ClothSprings { bend_stiffness: 5.0, ..default() });
@@ -65,11 +46,11 @@ fn levels_are_copied_as_rust() {
     let mut desk = Desk::new(app);
     desk.click(Role::CheckBox, "Coarse levels");
     let expected = "Cloth { levels: Some(vec![]), ..default() },\nFabric::default(),\n";
-    assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some(expected));
+    assert_eq!(desk.copy("Copy as Rust").as_deref(), Some(expected));
     desk.choose(Role::ComboBox, "Cloth", "Own");
     let expected =
         "Cloth { levels: Some(vec![LevelPass { stride: 4, iterations: 6 }]), ..default() },\nFabric::default(),\n";
-    assert_eq!(copy(&mut desk, "Copy as Rust").as_deref(), Some(expected));
+    assert_eq!(desk.copy("Copy as Rust").as_deref(), Some(expected));
     // What was copied, as code.
     let _: [Cloth; 2] = [
         Cloth { levels: Some(vec![]), ..default() },
@@ -83,7 +64,7 @@ fn the_fabric_is_copied_as_a_file() {
     let cloth = spawn_cloth(&mut app, "Curtain", Fabric::SILK);
     let mut desk = Desk::new(app);
     desk.type_value("Lift", "0.3");
-    let text = copy(&mut desk, "Copy as RON").expect("a text");
+    let text = desk.copy("Copy as RON").expect("a text");
     assert_eq!(Fabric::from_ron(&text).as_ref(), Ok(desk.get::<Fabric>(cloth)));
 }
 
@@ -94,5 +75,5 @@ fn the_wind_is_copied_as_rust() {
     let mut desk = Desk::new(app);
     let at = desk.control(Role::Button, "Copy wind as Rust").rect().center();
     let expected = "Wind { velocity: Vec3::new(4.0, 0.0, 1.6), gusts: 0.6, ..default() },\n";
-    assert_eq!(press(&mut desk, at).as_deref(), Some(expected));
+    assert_eq!(desk.copy_at(at).as_deref(), Some(expected));
 }

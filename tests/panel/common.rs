@@ -41,11 +41,11 @@ pub fn app_with(plugin: impl Plugin) -> App {
                 hear::<ClothSprings>,
                 hear::<Pins>,
                 hear::<Wind>,
-                |gravity: Res<ClothGravity>, mut heard: ResMut<Heard>| {
-                    if gravity.is_changed() {
-                        heard.changed.push("ClothGravity");
-                    }
-                },
+                hear::<ClothSkin>,
+                hear::<ClothInertia>,
+                hear::<ClothTeleport>,
+                hear_resource::<ClothGravity>,
+                hear_resource::<ClothBudget>,
             )
                 .chain(),
         );
@@ -61,6 +61,12 @@ pub fn app_with(plugin: impl Plugin) -> App {
 
 fn hear<C: Component + TypePath>(changed: Query<(), Changed<C>>, mut heard: ResMut<Heard>) {
     heard.changed.extend(changed.iter().map(|()| C::short_type_path()));
+}
+
+fn hear_resource<R: Resource + TypePath>(resource: Res<R>, mut heard: ResMut<Heard>) {
+    if resource.is_changed() {
+        heard.changed.push(R::short_type_path());
+    }
 }
 
 /// Spawns a named cloth that hangs from its top edge, with other components over it.
@@ -82,11 +88,11 @@ impl Desk {
             app.update();
         }
         let harness = Harness::builder()
-            .with_size(egui::vec2(330.0, 1600.0))
+            .with_size(egui::vec2(340.0, 2400.0))
             .with_max_steps(30)
             .build_ui_state(|ui, app: &mut App| cloth_panel(ui, app.world_mut()), app);
         let mut desk = Self { harness };
-        for section in ["Gravity and air", "Wind", "Drawing"] {
+        for section in ["Inertia", "Teleport", "Gravity and air", "Wind", "Budget", "Mesh", "Drawing"] {
             if desk.harness.query_by_label(section).is_some() {
                 desk.press(section);
             }
@@ -127,6 +133,11 @@ impl Desk {
     /// What has happened since this was last asked.
     pub fn heard(&mut self) -> Heard {
         core::mem::take(&mut *self.app().world_mut().resource_mut::<Heard>())
+    }
+
+    /// All that is written.
+    pub fn texts(&self) -> Vec<String> {
+        self.harness.root().children_recursive().filter_map(|node| node.accesskit_node().value()).collect()
     }
 
     /// A control by what it is and what it is called.
@@ -207,8 +218,29 @@ impl Desk {
         self.frame();
     }
 
+    /// Presses an entry of the menu and gives what is on the clipboard right then.
+    #[track_caller]
+    pub fn copy(&mut self, entry: &str) -> Option<String> {
+        let at = self.control(Role::Button, "Copy ⏷").rect().center();
+        self.click_at(at);
+        let at = self.control(Role::Button, entry).rect().center();
+        self.copy_at(at)
+    }
+
+    /// Presses a button and gives what is on the clipboard right then.
+    pub fn copy_at(&mut self, at: Pos2) -> Option<String> {
+        self.harness.hover_at(at);
+        self.harness.step();
+        self.harness.drag_at(at);
+        self.harness.step();
+        let button = PointerButton::Primary;
+        self.harness.event(Event::PointerButton { pos: at, button, pressed: false, modifiers: default() });
+        self.harness.step();
+        self.copied()
+    }
+
     /// What has been put on the clipboard by the latest frame.
-    pub fn copied(&self) -> Option<String> {
+    fn copied(&self) -> Option<String> {
         self.harness.output().platform_output.commands.iter().find_map(|command| match command {
             egui::OutputCommand::CopyText(text) => Some(text.clone()),
             _ => None,

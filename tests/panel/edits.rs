@@ -113,6 +113,21 @@ fn the_solver_and_its_own_settings_can_be_chosen() {
 }
 
 #[test]
+fn when_a_cloth_steps_can_be_chosen() {
+    let mut app = app();
+    let cloth = spawn_cloth(&mut app, "Curtain", Pins::none());
+    let mut desk = Desk::new(app);
+    desk.choose(Role::ComboBox, "Timing", "Late");
+    assert_eq!(desk.get::<Cloth>(cloth), &Cloth { timing: ClothTiming::Late, ..default() });
+    let height = |desk: &Desk| desk.get::<ClothState>(cloth).position(9).expect("a particle").y;
+    let before = height(&desk);
+    desk.frames(10);
+    assert!(height(&desk) < before - 0.05, "it falls on");
+    desk.choose(Role::ComboBox, "Timing", "Auto");
+    assert_eq!(desk.get::<Cloth>(cloth), &Cloth::default());
+}
+
+#[test]
 fn what_cloth_keeps_from_itself_can_be_typed_once_it_meets_itself() {
     let mut app = app();
     let cloth = spawn_cloth(&mut app, "Curtain", ());

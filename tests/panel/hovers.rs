@@ -72,6 +72,22 @@ fn every_control_explains_itself() {
 }
 
 #[test]
+fn every_control_of_clothes_explains_itself() {
+    let mut app = app();
+    let map = ClothMap::Painted { scale: 1.0, missing: 0.5 };
+    let skin = ClothSkin { max_distance: map, backstop: Some(0.01), ..default() };
+    let cloth = spawn_cloth(&mut app, "Cape", (skin, ClothInertia::default(), ClothTeleport::default()));
+    app.insert_resource(ClothBudget { milliseconds: 2.0 });
+    let mut desk = Desk::new(app);
+    let all = controls(&desk);
+    assert_explained(&mut desk, &all);
+    desk.get_mut::<ClothSkin>(cloth).max_distance = ClothMap::Uniform(0.3);
+    desk.frame();
+    let uniform = controls(&desk);
+    assert_explained(&mut desk, &uniform);
+}
+
+#[test]
 fn every_control_of_springs_explains_itself() {
     let mut app = app();
     spawn_cloth(&mut app, "Curtain", ClothSprings::default());
@@ -87,6 +103,7 @@ fn every_entry_of_every_list_explains_itself() {
         (Role::ComboBox, "Cloth"),
         (Role::ComboBox, "Preset"),
         (Role::ComboBox, "Solver"),
+        (Role::ComboBox, "Timing"),
         (Role::ComboBox, "Which wind"),
         (Role::Button, "Pin ⏷"),
         (Role::Button, "Revert ⏷"),
@@ -132,10 +149,10 @@ fn no_two_controls_share_an_id() {
 #[test]
 fn the_panel_is_as_narrow_as_it_says() {
     let mut desk = full();
-    desk.harness.set_size(egui::vec2(312.0, 1600.0));
+    desk.harness.set_size(egui::vec2(340.0, 2400.0));
     desk.frames(2);
     let widest = controls(&desk).into_iter().map(|(rect, _)| rect.right()).fold(0.0, f32::max);
-    assert!(widest <= 312.0, "{widest}");
+    assert!(widest <= 340.0, "{widest}");
     let slider = desk.control(Role::Slider, "Density").rect();
     assert!(slider.width() > 60.0, "{slider:?}");
 }

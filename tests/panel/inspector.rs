@@ -52,10 +52,13 @@ fn every_component_shows_its_fields() {
     assert_shown(
         Cloth::default(),
         "Cloth",
-        &["solver", "max_strain", "substeps", "levels", "tether_slack", "max_velocity", "fluid_density"],
+        &["solver", "timing", "max_strain", "substeps", "levels", "tether_slack", "max_velocity", "fluid_density"],
     );
     assert_shown(Fabric::default(), "Fabric", &["density", "warp_stiffness", "lift"]);
     assert_shown(ClothSprings::default(), "ClothSprings", &["structural_stiffness", "bend_damping"]);
+    assert_shown(ClothSkin::default(), "ClothSkin", &["max_distance", "scale", "missing", "backstop", "pull"]);
+    assert_shown(ClothInertia::default(), "ClothInertia", &["linear", "max_speed"]);
+    assert_shown(ClothTeleport::default(), "ClothTeleport", &["mode", "distance"]);
     assert_shown(Pins::edge(ClothEdge::Top), "Pins", &["groups"]);
     assert_shown(Wind::default(), "Wind", &["velocity", "region", "gusts", "eddy_size"]);
     assert_shown(ClothCollider::from(Sphere::new(0.5)), "ClothCollider", &["shape", "layers"]);

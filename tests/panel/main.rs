@@ -5,17 +5,21 @@
 mod common;
 
 mod bad_numbers;
+mod budget;
 mod choice;
 mod clipboard;
 mod clock;
 #[cfg(feature = "debug")]
 mod drawing;
 mod edits;
+mod fabrics;
 mod hovers;
 mod inspector;
 mod numbers;
+mod readings;
 mod revert;
 mod springs;
 mod warnings;
 mod window;
 mod winds;
+mod worn;

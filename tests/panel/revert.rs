@@ -68,7 +68,7 @@ fn wind_and_gravity_go_back_and_added_winds_go() {
     desk.click(Role::Button, "Add wind");
     desk.type_nth_value("Gravity, m/s²", 1, "3");
     desk.type_value("Gravity scale", "2");
-    desk.choose(Role::Button, REVERT, "Wind and gravity");
+    desk.choose(Role::Button, REVERT, "Wind, gravity, budget");
     let world = desk.app().world_mut();
     assert_eq!(world.query::<&Wind>().iter(world).count(), 0);
     assert_eq!(desk.resource::<ClothGravity>(), &ClothGravity::default());

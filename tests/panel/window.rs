@@ -1,7 +1,7 @@
 //! The panel's own window and its key.
 
 use bevy::{
-    camera::RenderTarget,
+    camera::{RenderTarget, Viewport},
     input::{
         ButtonState, InputPlugin,
         keyboard::{Key, KeyCode, KeyboardInput, NativeKey},
@@ -14,7 +14,11 @@ use bevy_drape::{
     panel::{ClothPanel, ClothPanelPlugin},
     prelude::*,
 };
-use bevy_egui::{EguiContext, EguiPlugin, PrimaryEguiContext, egui, input::EguiWantsInput};
+use bevy_egui::{
+    EguiContext, EguiFullOutput, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext,
+    egui::{self, Event, MouseWheelUnit, Pos2, Rect, Shape, TouchPhase},
+    input::{EguiInputEvent, EguiWantsInput},
+};
 
 /// An app with all that egui needs, and no display.
 fn app(panel: ClothPanelPlugin) -> App {
@@ -120,4 +124,103 @@ fn an_app_without_keyboard_or_clock_or_cloth_is_left_in_peace() {
         let _ = context.run_ui(default(), |ui| bevy_drape::panel::cloth_panel(ui, app.world_mut()));
         app.update();
     }
+}
+
+/// Texts of which all can be seen, and where.
+#[derive(Resource, Default)]
+struct Seen(Vec<(String, Rect)>);
+
+impl Seen {
+    #[track_caller]
+    fn place(&self, text: &str) -> Rect {
+        self.0.iter().find(|(seen, _)| seen == text).unwrap_or_else(|| panic!("{text:?} isn't seen")).1
+    }
+
+    fn has(&self, text: &str) -> bool {
+        self.0.iter().any(|(seen, _)| seen == text)
+    }
+}
+
+fn note_texts(outputs: Query<&EguiFullOutput>, mut seen: ResMut<Seen>) {
+    seen.0.clear();
+    for shape in outputs.iter().filter_map(|output| output.as_ref()).flat_map(|output| &output.shapes) {
+        note_text(&shape.shape, shape.clip_rect, &mut seen.0);
+    }
+}
+
+fn note_text(shape: &Shape, clip: Rect, seen: &mut Vec<(String, Rect)>) {
+    match shape {
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| note_text(shape, clip, seen)),
+        Shape::Text(text) if clip.contains_rect(text.visual_bounding_rect()) => {
+            seen.push((text.galley.text().to_owned(), text.visual_bounding_rect()));
+        }
+        _ => {}
+    }
+}
+
+/// An app with a cloth and an open window on a screen of this size, after some frames.
+fn screen(size: UVec2, cloth: Cloth) -> App {
+    let mut app = app(ClothPanelPlugin { open: true, ..default() });
+    app.init_resource::<Seen>()
+        .add_systems(PostUpdate, note_texts.after(EguiPostUpdateSet::EndPass).before(EguiPostUpdateSet::ProcessOutput));
+    let mut cameras = app.world_mut().query::<&mut Camera>();
+    let mut camera = cameras.single_mut(app.world_mut()).expect("one camera");
+    camera.viewport = Some(Viewport { physical_size: size, ..default() });
+    let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(Mesh::from(ClothGrid::new(1.0, 1.0, 8, 8)));
+    app.world_mut().spawn((Mesh3d(mesh), cloth, Pins::edge(ClothEdge::Top), Name::new("Curtain")));
+    for _ in 0..20 {
+        app.update();
+    }
+    app
+}
+
+/// Turns the wheel with the pointer at a place.
+fn scroll(app: &mut App, at: Pos2) {
+    let context = app.world_mut().query_filtered::<Entity, With<EguiContext>>().single(app.world()).expect("one");
+    let (unit, delta, phase) = (MouseWheelUnit::Point, egui::vec2(0.0, -2000.0), TouchPhase::Move);
+    let wheel = Event::MouseWheel { unit, delta, phase, modifiers: default() };
+    for event in [Event::PointerMoved(at), wheel] {
+        app.world_mut().write_message(EguiInputEvent { context, event });
+        app.update();
+    }
+    for _ in 0..60 {
+        app.update();
+    }
+}
+
+const READINGS: [&str; 5] = ["Step time, ms", "Substeps taken", "Stretch, %", "Energy, J", "Contacts"];
+
+#[test]
+fn readings_and_advice_are_seen_on_a_small_screen_without_scrolling() {
+    let ill = Cloth { solver: ClothSolver::Explicit, max_substeps: 1, ..default() };
+    let app = screen(UVec2::new(1280, 720), ill);
+    let seen = app.world().resource::<Seen>();
+    for text in READINGS.into_iter().chain(["Cloth", "Status", "Pause", "Reset", "Fabric", "Preset"]) {
+        assert!(seen.place(text).bottom() <= 720.0, "{text}");
+    }
+    let advice = seen.0.iter().find(|(text, _)| text.contains("substeps carry only")).expect("the advice");
+    assert!(advice.1.top() > seen.place("Contacts").bottom());
+    assert!(seen.0.iter().any(|(text, _)| text.ends_with("for the explicit solver's stability")), "why so many");
+}
+
+#[test]
+fn readings_stay_in_sight_while_settings_scroll() {
+    let mut app = screen(UVec2::new(1280, 720), Cloth::default());
+    let before = app.world().resource::<Seen>().place("Energy, J");
+    let at = app.world().resource::<Seen>().place("Preset").center();
+    assert!(!app.world().resource::<Seen>().has("Drawing"));
+    scroll(&mut app, at);
+    let seen = app.world().resource::<Seen>();
+    assert_eq!(seen.place("Energy, J"), before);
+    assert!(!seen.has("Preset") && seen.has("Mesh"), "the settings have scrolled: {:?}", seen.0);
+}
+
+#[test]
+fn on_a_very_small_screen_all_of_it_scrolls() {
+    let mut app = screen(UVec2::new(640, 360), Cloth::default());
+    let at = app.world().resource::<Seen>().place("Substeps taken").center();
+    assert!(!app.world().resource::<Seen>().has("Preset"));
+    scroll(&mut app, at);
+    let seen = app.world().resource::<Seen>();
+    assert!(!seen.has("Substeps taken") && seen.has("Mesh"), "{:?}", seen.0);
 }

@@ -1,4 +1,4 @@
-//! The head of the panel: which cloth, what is wrong with it, the clock, and the buttons.
+//! The head of the panel: which cloth, what is wrong with it, what to do about that, the clock, and the buttons.
 
 use bevy_egui::egui::{Label, RichText, Ui};
 
@@ -9,6 +9,9 @@ use super::{
     model::{Ask, Model},
 };
 use crate::pins::{ClothEdge, Pins};
+
+/// Cloths for which advice is shown. More would push all else out of the window.
+const MOST_ADVICE: usize = 3;
 
 /// The choice of a cloth.
 pub(super) fn show_choice(ui: &mut Ui, model: &mut Model) {
@@ -50,9 +53,19 @@ fn status(model: &Model) -> (String, Option<String>) {
         (format!("⚠ {brief}"), Some(full.clone()))
     } else if let Some((_, first)) = advice.first() {
         let count = if model.chosen.len() > 1 { format!("{} cloths: ", advice.len()) } else { String::new() };
-        (format!("⚠ {count}{}", first.brief), Some(format!("{}\n\nThe section Solver has it, too.", first.full)))
+        (format!("⚠ {count}{}", first.brief), Some(format!("{}\n\nIt stands above the settings, too.", first.full)))
     } else {
         ("Runs well".into(), None)
+    }
+}
+
+/// What to change where a cloth isn't solved well.
+pub(super) fn show_advice(ui: &mut Ui, model: &Model) {
+    for (entity, advice) in model.advice.iter().take(MOST_ADVICE) {
+        let name = model.cloths.iter().find(|(cloth, _)| cloth == entity).filter(|_| model.chosen.len() > 1);
+        let name = name.map_or(String::new(), |(_, name)| format!("{name}: "));
+        let text = RichText::new(format!("⚠ {name}{}", advice.full)).color(ui.visuals().warn_fg_color);
+        ui.add(Label::new(text).wrap());
     }
 }
 
@@ -100,11 +113,12 @@ pub(super) fn show_buttons(ui: &mut Ui, model: &mut Model) {
 fn show_reverts(ui: &mut Ui, model: &mut Model) {
     const CLOTH: Naming = naming(
         "This cloth",
-        "Settings, fabric, springs and pins of the chosen cloth as they were once it was ready. It follows its fabric's file \
-         again.",
+        "Settings, fabric, springs, skin, inertia, teleport and pins of the chosen cloth as they were once it was ready. It follows its \
+         fabric's file again.",
     );
-    const SURROUNDINGS: Naming = naming("Wind and gravity", "Gravity and all winds as they were. Added winds go.");
-    const ALL: Naming = naming("Everything", "The chosen cloth, gravity and all winds.");
+    const SURROUNDINGS: Naming =
+        naming("Wind, gravity, budget", "Gravity, the budget and all winds as they were. Added winds go.");
+    const ALL: Naming = naming("Everything", "The chosen cloth, gravity, the budget and all winds.");
     if entry(ui, CLOTH) {
         model.asks.push(Ask::RevertCloth);
     }
@@ -119,7 +133,8 @@ fn show_reverts(ui: &mut Ui, model: &mut Model) {
 fn show_copies(ui: &mut Ui, model: &Model) {
     const RUST: Naming = naming(
         "Copy as Rust",
-        "The code of Cloth, Fabric and, where it is there, ClothSprings, without what is default.",
+        "The code of Cloth, Fabric and, where they are there, ClothSprings, ClothSkin, ClothInertia and ClothTeleport, without what \
+         is default.",
     );
     const RON: Naming = naming("Copy as RON", "The fabric as the text of a .fabric.ron file.");
     let settings = &model.settings;

@@ -1,11 +1,11 @@
 //! The panel's controls. None can be made without the text that explains it.
 
 use bevy_egui::egui::{
-    Align, Button, CollapsingHeader, ComboBox, Label, Layout, Response, RichText, Ui, UiBuilder, vec2,
+    Align, Button, CollapsingHeader, ComboBox, Label, Layout, Response, RichText, TextStyle, Ui, UiBuilder, vec2,
 };
 
 /// Width of names, in points.
-const NAME_WIDTH: f32 = 96.0;
+const NAME_WIDTH: f32 = 112.0;
 
 /// What a control is called, and what it does: with the unit, a sensible range, and what to expect.
 #[derive(Clone, Copy, Debug)]
@@ -23,13 +23,15 @@ pub(super) const fn naming<'a>(name: &'a str, hover: &'a str) -> Naming<'a> {
 pub(super) struct Aside<'a> {
     /// The chosen cloths don't have it in common.
     pub differs: bool,
+    /// It has a dot behind its name.
+    pub is_marked: bool,
     /// A sentence, or nothing.
     pub note: &'a str,
 }
 
 impl From<bool> for Aside<'_> {
     fn from(differs: bool) -> Self {
-        Self { differs, note: "" }
+        Self { differs, ..Self::default() }
     }
 }
 
@@ -40,14 +42,19 @@ pub(super) fn row<'a, R>(
     aside: impl Into<Aside<'a>>,
     content: impl FnOnce(&mut Ui, Response) -> (Response, R),
 ) -> R {
-    let Aside { differs, note } = aside.into();
+    let Aside { differs, is_marked, note } = aside.into();
     let content = |ui: &mut Ui| {
         let height = ui.spacing().interact_size.y;
         let name = ui
             .allocate_ui_with_layout(vec2(NAME_WIDTH, height), Layout::left_to_right(Align::Center), |ui| {
                 ui.set_min_width(NAME_WIDTH);
+                ui.spacing_mut().item_spacing.x = 4.0;
                 let text = RichText::new(naming.name);
-                ui.add(Label::new(if differs { text.italics() } else { text }).selectable(false))
+                let name = ui.add(Label::new(if differs { text.italics() } else { text }).selectable(false));
+                if is_marked {
+                    ui.add(Label::new(RichText::new("●").small().weak()).selectable(false));
+                }
+                name
             })
             .inner;
         let (response, result) = content(ui, name);
@@ -66,7 +73,7 @@ pub(super) fn buttons(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui)) {
 
 /// A part whose ids come from `name` alone: warnings and rows that come and go before it neither change them nor end a
 /// drag.
-fn group<R>(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub(super) fn group<R>(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.id().with(name);
     ui.scope_builder(UiBuilder::new().id(id), content).inner
 }
@@ -74,6 +81,36 @@ fn group<R>(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
 /// A row that shows a value and changes nothing.
 pub(super) fn reading(ui: &mut Ui, naming: Naming<'_>, value: String) {
     row(ui, naming, false, |ui, name| (name | ui.add(Label::new(value).selectable(false)), ()));
+}
+
+/// The same with room for two lines, so that what comes below stays where it is.
+pub(super) fn long_reading(ui: &mut Ui, naming: Naming<'_>, value: String) {
+    row(ui, naming, false, |ui, name| {
+        let lines = vec2(ui.available_width(), 2.0 * ui.text_style_height(&TextStyle::Body));
+        let value = ui.allocate_ui_with_layout(lines, Layout::top_down(Align::Min), |ui| {
+            ui.set_min_size(lines);
+            ui.add(Label::new(value).wrap().selectable(false))
+        });
+        (name | value.inner, ())
+    });
+}
+
+/// A row of up to three numbers, each with what it is of. Their places don't depend on their digits.
+pub(super) fn figures(ui: &mut Ui, naming: Naming<'_>, figures: &[(String, &str)]) {
+    row(ui, naming, false, |ui, name| {
+        let size = vec2((ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0, ui.spacing().interact_size.y);
+        let figure = |ui: &mut Ui, (value, of): &(String, &str)| {
+            let layout = Layout::left_to_right(Align::Center);
+            let both = ui.allocate_ui_with_layout(size, layout, |ui| {
+                ui.set_min_width(size.x);
+                ui.spacing_mut().item_spacing.x = 3.0;
+                let value = ui.add(Label::new(value).selectable(false));
+                value | ui.add(Label::new(RichText::new(*of).small().weak()).selectable(false))
+            });
+            both.inner
+        };
+        (figures.iter().fold(name, |all, one| all | figure(ui, one)), ())
+    });
 }
 
 /// A box to tick.
@@ -131,10 +168,24 @@ pub(super) fn choice<'a, T: Copy + PartialEq>(
 
 /// A part of the panel that can be folded.
 pub(super) fn section(ui: &mut Ui, naming: Naming<'_>, is_open: bool, content: impl FnOnce(&mut Ui)) {
+    fold(ui, naming, RichText::new(naming.name).strong(), is_open, content);
+}
+
+/// A part of a section that can be folded.
+pub(super) fn subsection(ui: &mut Ui, naming: Naming<'_>, content: impl FnOnce(&mut Ui)) {
+    fold(ui, naming, RichText::new(naming.name), true, content);
+}
+
+fn fold(ui: &mut Ui, naming: Naming<'_>, header: RichText, is_open: bool, content: impl FnOnce(&mut Ui)) {
     group(ui, naming.name, |ui| {
-        let section = CollapsingHeader::new(RichText::new(naming.name).strong()).default_open(is_open);
+        let section = CollapsingHeader::new(header).default_open(is_open);
         explain(section.show_unindented(ui, content).header_response, naming.hover);
     });
+}
+
+/// Small text over the width of the panel.
+pub(super) fn remark(ui: &mut Ui, text: impl Into<String>) {
+    ui.add(Label::new(RichText::new(text).small().weak()).wrap().selectable(false));
 }
 
 /// Explains a control, also one that can't be used now.

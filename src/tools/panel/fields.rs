@@ -3,13 +3,28 @@
 use bevy::{
     ecs::component::Mutable,
     prelude::*,
-    reflect::{PartialReflect, structs::Struct},
+    reflect::{PartialReflect, ReflectRef, structs::Struct},
 };
 
 /// Whether two fields have the same value. NaN is the same as NaN: nobody has edited that.
 pub(super) fn same(a: &dyn PartialReflect, b: &dyn PartialReflect) -> bool {
     let is_nan = |value: &dyn PartialReflect| value.try_downcast_ref::<f32>().is_some_and(|value| value.is_nan());
-    a.reflect_partial_eq(b) == Some(true) || is_nan(a) && is_nan(b)
+    let both_same = |pair: (Option<_>, Option<_>)| match pair {
+        (Some(a), Some(b)) => same(a, b),
+        _ => false,
+    };
+    a.reflect_partial_eq(b) == Some(true)
+        || is_nan(a) && is_nan(b)
+        || match (a.reflect_ref(), b.reflect_ref()) {
+            (ReflectRef::Enum(a), ReflectRef::Enum(b)) => {
+                a.variant_name() == b.variant_name()
+                    && (0..a.field_len()).all(|i| both_same((a.field_at(i), b.field_at(i))))
+            }
+            (ReflectRef::Struct(a), ReflectRef::Struct(b)) => {
+                (0..a.field_len()).all(|i| both_same((a.field_at(i), b.field_at(i))))
+            }
+            _ => false,
+        }
 }
 
 /// Indices of the fields that differ.
@@ -102,5 +117,14 @@ mod tests {
         let nan = Fabric { lift: f32::NAN, ..default() };
         assert_eq!(differing(&nan, &nan.clone()).count(), 0);
         assert_eq!(differing(&nan, &Fabric::default()).collect::<Vec<_>>(), [14]);
+        let skin = |distance| ClothSkin {
+            max_distance: ClothMap::Painted { scale: distance, missing: 1.0 },
+            backstop: Some(f32::NAN),
+            ..default()
+        };
+        assert_eq!(differing(&skin(f32::NAN), &skin(f32::NAN)).count(), 0);
+        assert_eq!(differing(&skin(f32::NAN), &skin(1.0)).collect::<Vec<_>>(), [0]);
+        let wind = |y| Wind { velocity: Vec3::new(f32::NAN, y, 0.0), ..default() };
+        assert_eq!((differing(&wind(1.0), &wind(1.0)).count(), differing(&wind(1.0), &wind(2.0)).count()), (0, 1));
     }
 }

@@ -1,12 +1,13 @@
 //! Numbers to turn: a slider for the sensible range, and a field for all that the solver accepts. What they are is said where
 //! the field is declared, by its [`Parameter`] and its documentation.
 
-use bevy::reflect::{PartialReflect, TypeInfo, Typed, structs::Struct};
+use bevy::reflect::{PartialReflect, TypeInfo, Typed, enums::VariantInfo, structs::Struct};
 use bevy_egui::egui::{DragValue, Response, Slider, SliderClamping, Ui, vec2};
 
 use super::{
     control::{Aside, naming, row},
     number,
+    wording::{prose, sentence},
 };
 use crate::parameter::{self, Parameter, Scale};
 
@@ -61,6 +62,21 @@ impl Knob {
     pub fn of<C: Typed>(field: &str) -> Option<Self> {
         let info = C::type_info().as_struct().ok()?.field(field)?;
         Some(Self::new(*info.get_attribute()?, field, info.docs()))
+    }
+
+    /// The knob of a field of a variant, by its place there.
+    pub fn of_variant<E: Typed>(variant: &str, place: usize) -> Option<Self> {
+        match E::type_info().as_enum().ok()?.variant(variant)? {
+            VariantInfo::Struct(info) => {
+                let info = info.field_at(place)?;
+                Some(Self::new(*info.get_attribute()?, info.name(), info.docs()))
+            }
+            VariantInfo::Tuple(info) => {
+                let info = info.field_at(place)?;
+                Some(Self::new(*info.get_attribute()?, variant, info.docs()))
+            }
+            VariantInfo::Unit(_) => None,
+        }
     }
 
     /// The knob of what is a parameter as a whole.
@@ -171,29 +187,6 @@ impl Knob {
     }
 }
 
-/// The first paragraph of a documentation without its marks.
-fn prose(docs: &str) -> String {
-    let lines = docs.trim().lines().map(str::trim).take_while(|line| !line.is_empty());
-    let text = lines.collect::<Vec<_>>().join(" ").replace('`', "");
-    let mut prose = String::new();
-    let mut rest = text.as_str();
-    // Of links, what they are called.
-    while let Some((before, (name, after))) = rest.split_once('[').and_then(|(a, b)| Some((a, b.split_once(']')?))) {
-        prose += before;
-        prose += name;
-        let target = after.strip_prefix('(').and_then(|target| target.split_once(')'));
-        rest = target.map_or(after, |(_, after)| after);
-    }
-    prose + rest
-}
-
-/// A field's name as it is read.
-fn sentence(field: &str) -> String {
-    let name = field.replace('_', " ");
-    let mut letters = name.chars();
-    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -241,14 +234,12 @@ mod tests {
         assert_eq!(Knob::of::<Fabric>("warp_stiffness").unwrap().name, "Warp stiffness");
         assert_eq!(Knob::of::<Wind>("velocity").unwrap().name, "Wind speed");
         assert_eq!(Knob::of_all::<ClothGravity>().unwrap().name, "Gravity");
+        assert_eq!(Knob::of_variant::<ClothMap>("Painted", 0).unwrap().name, "Paint scale");
+        let everywhere = Knob::of_variant::<ClothMap>("Uniform", 0).unwrap();
+        assert_eq!(everywhere.name, "Everywhere");
+        assert!(everywhere.hover.starts_with("For every vertex, m"), "{}", everywhere.hover);
+        assert!(Knob::of_variant::<ClothMap>("Uniform", 1).is_none());
         assert!(Knob::of::<Wind>("seed").is_none() && Knob::of::<Fabric>("nothing").is_none());
-    }
-
-    #[test]
-    fn marks_of_a_documentation_are_left_out() {
-        let docs = " As [`Cloth::a`] or\n [b](Self::c), `d` * [2.\n\n More.";
-        assert_eq!(prose(docs), "As Cloth::a or b, d * [2.");
-        assert_eq!(prose(""), "");
     }
 
     /// All parameters of a component: field, parameter, documentation and default.
@@ -264,7 +255,14 @@ mod tests {
 
     #[test]
     fn documentation_says_what_the_table_says() {
-        let defaults = [parameters::<Cloth>(), parameters::<ClothSprings>(), parameters::<Wind>()];
+        let defaults = [
+            parameters::<Cloth>(),
+            parameters::<ClothSprings>(),
+            parameters::<ClothSkin>(),
+            parameters::<ClothInertia>(),
+            parameters::<ClothTeleport>(),
+            parameters::<Wind>(),
+        ];
         for (field, .., docs, default) in defaults.iter().flatten() {
             let default = default.map_or_else(String::new, |default| format!(" {default}"));
             assert!(docs.contains(&format!("{default} by default")), "{field}:{default} in {docs:?}");
@@ -288,9 +286,22 @@ mod tests {
 
     #[test]
     fn what_can_be_entered_is_accepted_and_sliders_have_nothing_else() {
-        let all = [parameters::<Fabric>(), parameters::<Cloth>(), parameters::<ClothSprings>(), parameters::<Wind>()];
-        assert_eq!(all.each_ref().map(Vec::len), [15, 12, 6, 6]);
-        for (field, Parameter { accepted, entered, slider, .. }, ..) in all.iter().flatten() {
+        let all = [
+            parameters::<Fabric>(),
+            parameters::<Cloth>(),
+            parameters::<ClothSprings>(),
+            parameters::<ClothSkin>(),
+            parameters::<ClothInertia>(),
+            parameters::<ClothTeleport>(),
+            parameters::<ClothBudget>(),
+            parameters::<Wind>(),
+        ];
+        assert_eq!(all.each_ref().map(Vec::len), [15, 12, 6, 4, 4, 4, 1, 6]);
+        let maps = [("Painted", 0), ("Painted", 1), ("Uniform", 0)];
+        let maps = maps.map(|(variant, place)| Knob::of_variant::<ClothMap>(variant, place).unwrap());
+        let maps = maps.iter().map(|knob| (knob.name.as_str(), knob.parameter));
+        let fields = all.iter().flatten().map(|&(field, parameter, ..)| (field, parameter));
+        for (field, Parameter { accepted, entered, slider, .. }) in fields.chain(maps) {
             assert!(accepted.0 <= entered.0 && entered.1 <= accepted.1, "{field}");
             assert!(entered.0 <= slider.0 && slider.0 < slider.1 && slider.1 <= entered.1, "{field}");
         }

@@ -10,6 +10,7 @@ use super::fields;
 use crate::{
     cloth::Cloth,
     fabric::{ClothSprings, Fabric},
+    skin::{ClothInertia, ClothSkin, ClothTeleport},
     state::ClothStatus,
 };
 
@@ -53,6 +54,9 @@ pub(super) struct Differing {
     pub cloth: Vec<&'static str>,
     pub fabric: Vec<&'static str>,
     pub springs: Vec<&'static str>,
+    pub skin: Vec<&'static str>,
+    pub inertia: Vec<&'static str>,
+    pub teleport: Vec<&'static str>,
 }
 
 impl Differing {
@@ -61,6 +65,9 @@ impl Differing {
             cloth: differing_in::<Cloth>(world, chosen),
             fabric: differing_in::<Fabric>(world, chosen),
             springs: differing_in::<ClothSprings>(world, chosen),
+            skin: differing_in::<ClothSkin>(world, chosen),
+            inertia: differing_in::<ClothInertia>(world, chosen),
+            teleport: differing_in::<ClothTeleport>(world, chosen),
         }
     }
 }

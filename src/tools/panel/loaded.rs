@@ -2,11 +2,16 @@
 
 use bevy::prelude::*;
 
-use super::{ClothPanel, memory::Memory};
+use super::{
+    ClothPanel,
+    beside::{Beside, BesideRef},
+    memory::Memory,
+};
 use crate::{
     cloth::Cloth,
-    fabric::{ClothSprings, Fabric, handle::FabricHandle},
+    fabric::{Fabric, handle::FabricHandle},
     pins::Pins,
+    simulate::budget::ClothBudget,
     state::ClothStatus,
     surroundings::{ClothGravity, wind::Wind},
 };
@@ -17,7 +22,7 @@ use crate::{
 pub(super) struct LoadedCloth {
     cloth: Cloth,
     fabric: Fabric,
-    springs: Option<ClothSprings>,
+    beside: Beside,
     pins: Pins,
     /// Whether it kept its fabric apart from the asset that it has a handle of.
     is_detached: bool,
@@ -32,19 +37,19 @@ pub(super) struct LoadedWind(Wind);
 pub(super) fn remember(
     mut commands: Commands,
     cloths: Query<
-        (Entity, &Cloth, &Fabric, Option<&ClothSprings>, &Pins, Option<&FabricHandle>, &ClothStatus),
+        (Entity, &Cloth, &Fabric, BesideRef, &Pins, Option<&FabricHandle>, &ClothStatus),
         Without<LoadedCloth>,
     >,
     winds: Query<(Entity, &Wind), Without<LoadedWind>>,
-    gravity: Option<Res<ClothGravity>>,
+    (gravity, budget): (Option<Res<ClothGravity>>, Option<Res<ClothBudget>>),
     mut panel: ResMut<ClothPanel>,
 ) {
-    for (entity, cloth, fabric, springs, pins, follower, status) in &cloths {
+    for (entity, cloth, fabric, beside, pins, follower, status) in &cloths {
         if status.is_running() {
             commands.entity(entity).try_insert(LoadedCloth {
                 cloth: cloth.clone(),
                 fabric: fabric.clone(),
-                springs: springs.cloned(),
+                beside: beside.cloned(),
                 pins: pins.clone(),
                 is_detached: follower.is_some_and(|follower| follower.detached),
             });
@@ -55,6 +60,7 @@ pub(super) fn remember(
     }
     let memory = &mut panel.bypass_change_detection().memory;
     memory.gravity = memory.gravity.or(gravity.map(|gravity| gravity.0));
+    memory.budget = memory.budget.or(budget.map(|budget| *budget));
 }
 
 /// Gives a cloth back what it had. It follows its fabric's asset again.
@@ -69,28 +75,14 @@ pub(super) fn revert_cloth(world: &mut World, cloth: Entity) {
     if let Some(mut own) = world.get_mut::<Pins>(cloth) {
         own.set_if_neq(loaded.pins);
     }
-    revert_springs(world, cloth, loaded.springs);
+    loaded.beside.restore(world, cloth);
     // Written in any case: it has the asset's values copied again, which may have come later than the cloth was ready.
     if let Some(mut follower) = world.get_mut::<FabricHandle>(cloth) {
         follower.detached = loaded.is_detached;
     }
 }
 
-fn revert_springs(world: &mut World, cloth: Entity, loaded: Option<ClothSprings>) {
-    match (loaded, world.get_entity_mut(cloth)) {
-        (Some(loaded), Ok(mut entity)) => {
-            if entity.get::<ClothSprings>() != Some(&loaded) {
-                entity.insert(loaded);
-            }
-        }
-        (None, Ok(mut entity)) => {
-            entity.remove::<ClothSprings>();
-        }
-        (_, Err(_)) => {}
-    }
-}
-
-/// Gives gravity and all winds back what they had. Winds that the panel has added go.
+/// Gives gravity, the budget and all winds back what they had. Winds that the panel has added go.
 pub(super) fn revert_surroundings(world: &mut World, memory: &mut Memory) {
     for wind in memory.added_winds.drain(..) {
         world.commands().entity(wind).try_despawn();
@@ -102,5 +94,8 @@ pub(super) fn revert_surroundings(world: &mut World, memory: &mut Memory) {
     }
     if let (Some(loaded), Some(mut gravity)) = (memory.gravity, world.get_resource_mut::<ClothGravity>()) {
         gravity.set_if_neq(ClothGravity(loaded));
+    }
+    if let (Some(loaded), Some(mut budget)) = (memory.budget, world.get_resource_mut::<ClothBudget>()) {
+        budget.set_if_neq(loaded);
     }
 }

@@ -4,6 +4,7 @@ use bevy::prelude::*;
 
 use super::{
     ClothChoice,
+    advice::Advice,
     list::{self, Differing},
     loaded,
     memory::{Memory, Readings},
@@ -33,6 +34,8 @@ pub(super) struct Model {
     /// Some of the chosen cloths follow a fabric's asset.
     pub follows_asset: bool,
     pub readings: Readings,
+    /// What to change, and for which cloth.
+    pub advice: Vec<(Entity, Advice)>,
     /// What buttons have asked for.
     pub asks: Vec<Ask>,
 }
@@ -73,6 +76,7 @@ impl Model {
             follows_asset: chosen.iter().any(follows),
             settings: Settings::read(world, &chosen, memory),
             readings: memory.readings.clone(),
+            advice: memory.advice.clone(),
             cloths,
             choice,
             chosen,

@@ -2,22 +2,33 @@
 
 /// Digits that count: finer changes can't be seen in a cloth.
 const DIGITS: usize = 5;
+/// Digits of what changes all the time.
+const BRIEF_DIGITS: usize = 3;
 
 /// A number with a few digits that count and without trailing zeros: 0.0125, 20000, 1.5e-7.
 pub(super) fn text(value: f64) -> String {
+    with_digits(value, DIGITS)
+}
+
+/// The same with fewer digits, for what changes all the time.
+pub(super) fn brief(value: f64) -> String {
+    with_digits(value, BRIEF_DIGITS)
+}
+
+fn with_digits(value: f64, digits: usize) -> String {
     let size = value.abs();
     if !size.is_finite() {
         return value.to_string();
     }
     if size != 0.0 && !(1e-4..1e7).contains(&size) {
-        let text = format!("{value:.*e}", DIGITS - 1);
+        let text = format!("{value:.*e}", digits - 1);
         let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
         return format!("{}e{exponent}", trimmed(digits));
     }
     let before = size.max(1.0).log10() as usize + 1;
     // A zero before the point and those right behind it don't count.
     let after = if size > 0.0 && size < 1.0 { 1 + (-size.log10()) as usize } else { 0 };
-    trimmed(&format!("{value:.*}", DIGITS.saturating_sub(before) + after)).to_owned()
+    trimmed(&format!("{value:.*}", digits.saturating_sub(before) + after)).to_owned()
 }
 
 fn trimmed(text: &str) -> &str {
@@ -57,6 +68,15 @@ mod tests {
             (f64::NAN, "NaN"),
         ] {
             assert_eq!(text(value), expected);
+        }
+    }
+
+    #[test]
+    fn brief_numbers_have_three_digits() {
+        for (value, expected) in
+            [(0.0, "0"), (1.0 / 3.0, "0.333"), (-12.345, "-12.3"), (12345.6, "12346"), (1.234e-6, "1.23e-6")]
+        {
+            assert_eq!(brief(value), expected);
         }
     }
 

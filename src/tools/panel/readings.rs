@@ -1,4 +1,4 @@
-//! The section of numbers.
+//! What the chosen cloths cost and how they fare, at the top of the panel; and what they are made of, farther down.
 
 use std::collections::VecDeque;
 
@@ -6,76 +6,91 @@ use bevy_egui::egui::{Ui, Vec2b};
 use egui_plot::{HLine, Line, Plot, PlotPoints};
 
 use super::{
-    control::{Naming, explain, naming, reading, section},
+    control::{Naming, explain, figures, long_reading, naming, reading, section},
     memory::Readings,
     model::Model,
     number,
 };
 
 /// Height of the plot, in points.
-const PLOT_HEIGHT: f32 = 64.0;
+const PLOT_HEIGHT: f32 = 42.0;
 
-/// What the chosen cloths are made of, what they cost, and how they fare.
-pub(super) fn show(ui: &mut Ui, model: &Model, step_times: &VecDeque<f32>) {
-    section(ui, naming("Numbers", "Measurements of the chosen cloth; of several, sums and extremes."), true, |ui| {
-        show_cost(ui, &model.readings, step_times);
-        show_state(ui, &model.readings);
-    });
-}
-
+const READINGS: Naming = naming("Readings", "Measurements of the chosen cloth; of several, sums and extremes.");
 const STEP_TIME: Naming = naming(
-    "Step time",
-    "Time that a step takes on its thread, in ms, and its mean over the latest 300 steps. Several cloths are added up, \
-     though they may be stepped side by side.",
+    "Step time, ms",
+    "Time that a step takes on its thread, in ms: of the latest step, and mean and largest of the latest 300. Several cloths are added \
+     up, though they may be stepped side by side.",
 );
-const PARTICLES: Naming = naming("Particles", "Points with a mass: vertices at one place are one of them.");
-const SPRINGS: Naming = naming("Springs", "Springs of all kinds.");
-const WEAVE: Naming = naming(
-    "Mesh",
-    "What strands find in the mesh: rows and columns, which they hold best, strands that go straight on from edge to edge, \
-     or nothing but springs; and the coarse levels that it has, whether they are used or not.",
-);
+const HISTORY: &str = "Time of the latest 300 steps in ms, the newest on the right, and their mean.";
 const SUBSTEPS: Naming = naming(
     "Substeps taken",
     "Substeps of the latest step, and why so many. Of several cloths, those of the one that took most. A cloth at rest is \
      asleep, and takes none, until something changes near it.",
 );
+const STRETCH: Naming = naming(
+    "Stretch, %",
+    "Stretch of threads over their length: of the one that is stretched the most, and the mean of all, where what is pressed together \
+     counts as nothing. A few percent can't be seen.",
+);
+const ENERGY: Naming = naming(
+    "Energy, J",
+    "Energy of motion; energy in the springs; and the sum of both and that of height, of which only changes mean something.",
+);
 const CONTACTS: Naming = naming(
     "Contacts",
     "Contacts at the end of the latest step: particles at obstacles, and triangles and edges at each other and at what is sharp.",
 );
-const LARGEST_STRAIN: Naming = naming(
-    "Largest strain",
-    "Stretch of the thread that is stretched the most, over its length. A few percent can't be seen.",
+const MESH: Naming = naming("Mesh", "What the cloth is made of.");
+const PARTICLES: Naming = naming("Particles", "Points with a mass: vertices at one place are one of them.");
+const SPRINGS: Naming = naming("Springs", "Springs of all kinds.");
+const STRUCTURE: Naming = naming(
+    "Structure",
+    "What strands find in the mesh: rows and columns, which they hold best, strands that go straight on from edge to edge, \
+     or nothing but springs; and the coarse levels that it has, whether they are used or not.",
 );
-const MEAN_STRAIN: Naming =
-    naming("Mean strain", "Mean stretch of all threads; what is pressed together counts as nothing.");
-const KINETIC: Naming = naming("Kinetic", "Energy of motion, in J.");
-const ELASTIC: Naming = naming("Elastic", "Energy in the springs, in J.");
-const TOTAL: Naming = naming("Total", "Energy of motion, springs and height, in J. Only its changes mean something.");
 
-fn show_cost(ui: &mut Ui, readings: &Readings, step_times: &VecDeque<f32>) {
-    let mean = step_times.iter().sum::<f32>() / step_times.len().max(1) as f32;
-    let latest = step_times.back().copied().unwrap_or_default();
-    reading(ui, STEP_TIME, format!("{latest:.2} ms, mean {mean:.2} ms"));
-    plot(ui, step_times, mean);
-    reading(ui, PARTICLES, readings.particles.to_string());
-    reading(ui, SPRINGS, readings.springs.to_string());
-    reading(ui, WEAVE, readings.structure.clone());
-    let taken = format!("{}, {}", readings.substeps, readings.substep_reason);
-    let is_asleep = readings.asleep > 0 && readings.substeps == 0;
-    reading(ui, SUBSTEPS, if is_asleep { "none, asleep".into() } else { taken });
-    reading(ui, CONTACTS, readings.contacts.to_string());
+/// What the chosen cloths cost, and how they fare.
+pub(super) fn show(ui: &mut Ui, model: &Model, step_times: &VecDeque<f32>) {
+    let readings = &model.readings;
+    section(ui, READINGS, true, |ui| {
+        show_time(ui, step_times);
+        long_reading(ui, SUBSTEPS, substeps(readings));
+        let percent = |share: f32| format!("{:.2}", share * 100.0);
+        figures(ui, STRETCH, &[(percent(readings.largest_strain), "largest"), (percent(readings.mean_strain), "mean")]);
+        let joules = |energy: f32| number::brief(energy.into());
+        let energies = [(readings.kinetic, "kinetic"), (readings.elastic, "elastic"), (readings.total, "total")];
+        figures(ui, ENERGY, &energies.map(|(energy, of)| (joules(energy), of)));
+        reading(ui, CONTACTS, readings.contacts.to_string());
+    });
 }
 
-fn show_state(ui: &mut Ui, readings: &Readings) {
-    let percent = |share: f32| format!("{:.2} %", share * 100.0);
-    let joules = |energy: f32| format!("{} J", number::text(energy.into()));
-    reading(ui, LARGEST_STRAIN, percent(readings.largest_strain));
-    reading(ui, MEAN_STRAIN, percent(readings.mean_strain));
-    reading(ui, KINETIC, joules(readings.kinetic));
-    reading(ui, ELASTIC, joules(readings.elastic));
-    reading(ui, TOTAL, joules(readings.total));
+/// What the chosen cloths are made of.
+pub(super) fn show_mesh(ui: &mut Ui, readings: &Readings) {
+    section(ui, MESH, false, |ui| {
+        reading(ui, PARTICLES, readings.particles.to_string());
+        reading(ui, SPRINGS, readings.springs.to_string());
+        long_reading(ui, STRUCTURE, readings.structure.clone());
+    });
+}
+
+fn substeps(readings: &Readings) -> String {
+    let Readings { substeps, needed_substeps, substep_reason, asleep, .. } = readings;
+    if *asleep > 0 && *substeps == 0 {
+        "none, asleep".into()
+    } else if substeps < needed_substeps {
+        format!("{substeps} of {needed_substeps}, {substep_reason}")
+    } else {
+        format!("{substeps}, {substep_reason}")
+    }
+}
+
+fn show_time(ui: &mut Ui, step_times: &VecDeque<f32>) {
+    let mean = step_times.iter().sum::<f32>() / step_times.len().max(1) as f32;
+    let latest = step_times.back().copied().unwrap_or_default();
+    let largest = step_times.iter().copied().fold(0.0, f32::max);
+    let times = [(latest, "latest"), (mean, "mean"), (largest, "worst")];
+    figures(ui, STEP_TIME, &times.map(|(time, of)| (format!("{time:.2}"), of)));
+    plot(ui, step_times, mean);
 }
 
 /// The time of the latest steps.
@@ -103,5 +118,5 @@ fn plot(ui: &mut Ui, step_times: &VecDeque<f32>, mean: f32) {
             plot.line(Line::new("step time", points).color(color));
             plot.hline(HLine::new("mean", f64::from(mean)).color(mean_color));
         });
-    explain(plot.response, "Time of the latest 300 steps in ms, the newest on the right, and their mean.");
+    explain(plot.response, HISTORY);
 }

@@ -2,11 +2,12 @@
 
 use bevy::prelude::*;
 
-use super::{aim::Aim, code, fields, memory::Memory};
+use super::{aim::Aim, beside::Beside, code, fields, memory::Memory};
 use crate::{
     cloth::Cloth,
-    fabric::{ClothSprings, Fabric, handle::FabricHandle},
+    fabric::{Fabric, handle::FabricHandle},
     parameter::Parameter,
+    simulate::budget::ClothBudget,
     surroundings::{ClothGravity, wind::Wind},
 };
 
@@ -15,9 +16,10 @@ use crate::{
 pub(super) struct Settings {
     /// Of the first chosen cloth.
     pub cloth: Option<(Cloth, Fabric)>,
-    /// Of the first chosen cloth, where it has them.
-    pub springs: Option<ClothSprings>,
+    /// Of the first chosen cloth.
+    pub beside: Beside,
     pub gravity: Option<Vec3>,
+    pub budget: Option<ClothBudget>,
     pub wind: Option<(Entity, Wind, Aim)>,
     pub clock: Option<Clock>,
     #[cfg(feature = "debug")]
@@ -47,7 +49,8 @@ impl Settings {
         });
         Self {
             cloth,
-            springs: chosen.first().and_then(|&cloth| world.get(cloth).cloned()),
+            beside: chosen.first().map(|&cloth| Beside::read(world, cloth)).unwrap_or_default(),
+            budget: world.get_resource().copied(),
             wind,
             gravity: world.get_resource::<ClothGravity>().map(|gravity| gravity.0),
             clock: world
@@ -69,11 +72,7 @@ impl Settings {
                 }
             }
         }
-        if let (Some(before), Some(after)) = (&before.springs, &self.springs) {
-            for &cloth in chosen {
-                fields::write(world, cloth, before, after);
-            }
-        }
+        self.beside.write(world, &before.beside, chosen);
         if let (Some((_, old, old_aim)), Some((entity, wind, aim))) = (&before.wind, &self.wind) {
             let mut wind = wind.clone();
             if aim != old_aim {
@@ -86,6 +85,12 @@ impl Settings {
             && let Some(mut own) = world.get_resource_mut::<ClothGravity>()
         {
             own.0 = gravity;
+        }
+        if let (Some(before), Some(after)) = (&before.budget, &self.budget)
+            && fields::differing(before, after).next().is_some()
+            && let Some(mut own) = world.get_resource_mut::<ClothBudget>()
+        {
+            *own = *after;
         }
         if let Some(clock) = self.clock.filter(|_| self.clock != before.clock)
             && let Some(mut time) = world.get_resource_mut::<Time<Virtual>>()
@@ -100,8 +105,7 @@ impl Settings {
     /// The chosen cloth as Rust code.
     pub fn cloth_code(&self) -> Option<String> {
         let (cloth, fabric) = self.cloth.as_ref()?;
-        let springs = self.springs.as_ref().map(code::component);
-        let parts = [code::component(cloth), code::component(fabric)].into_iter().chain(springs);
+        let parts = [code::component(cloth), code::component(fabric)].into_iter().chain(self.beside.code());
         Some(parts.map(|part| part + ",\n").collect())
     }
 

@@ -1,16 +1,14 @@
-//! The section that edits how a cloth is solved, and says where that isn't enough.
+//! The section that edits how a cloth is solved, and when.
 
-use bevy_egui::egui::{Label, RichText, Ui};
+use bevy_egui::egui::Ui;
 
 use super::{
     control::{Naming, choice, naming, section, tick},
     knob,
     model::Model,
+    pick,
 };
 use crate::cloth::{Cloth, ClothSolver};
-
-/// Cloths for which advice is shown. More would push all else out of the window.
-const MOST_ADVICE: usize = 3;
 
 /// Substeps to begin with where they are set by hand.
 const BEGUN_SUBSTEPS: u32 = 8;
@@ -51,6 +49,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
         if let Some(solver) = choice(ui, which, differs("solver"), Some(cloth.solver), "", &SOLVERS) {
             cloth.solver = solver;
         }
+        pick::show(ui, cloth, "timing", differs("timing"));
         match cloth.solver {
             ClothSolver::Strands => {
                 knob::show(ui, cloth, "max_strain", differs("max_strain"));
@@ -71,7 +70,6 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model) {
                 knob::show(ui, cloth, "max_velocity", differs("max_velocity"));
             }
         }
-        show_advice(ui, model);
     });
 }
 
@@ -104,13 +102,4 @@ fn show_tethers(ui: &mut Ui, cloth: &mut Cloth, differs: bool) {
         cloth.tether_slack = is_on.then_some(Cloth::default().tether_slack.unwrap_or_default());
     }
     knob::show(ui, cloth, "tether_slack", differs);
-}
-
-fn show_advice(ui: &mut Ui, model: &Model) {
-    for (entity, advice) in model.readings.advice.iter().take(MOST_ADVICE) {
-        let name = model.cloths.iter().find(|(cloth, _)| cloth == entity).filter(|_| model.chosen.len() > 1);
-        let name = name.map_or(String::new(), |(_, name)| format!("{name}: "));
-        let text = RichText::new(format!("⚠ {name}{}", advice.full)).color(ui.visuals().warn_fg_color);
-        ui.add(Label::new(text).wrap());
-    }
 }

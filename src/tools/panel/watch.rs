@@ -105,6 +105,7 @@ fn add(
     if let Some(latest) = report.latest().filter(|_| !is_asleep) {
         if latest.substeps > readings.substeps {
             (readings.substeps, readings.substep_reason) = (latest.substeps, latest.reason);
+            readings.needed_substeps = latest.needed_substeps;
         }
         readings.contacts += latest.contacts;
     }

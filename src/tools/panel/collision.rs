@@ -9,7 +9,7 @@ use super::{
 };
 
 pub(super) fn show(ui: &mut Ui, model: &mut Model) {
-    section(ui, naming("Contact", "What the cloth touches, and how near it comes."), true, |ui| {
+    section(ui, naming("Collision", "What the cloth touches, and how near it comes."), true, |ui| {
         let Model { settings, differing, .. } = &mut *model;
         let Some((cloth, _)) = &mut settings.cloth else { return };
         let differs = |field| differing.cloth.contains(&field);
