@@ -399,6 +399,9 @@ mod surroundings;
 
 mod draw;
 
+#[cfg(feature = "gltf")]
+mod gltf;
+
 mod commands;
 mod schedule;
 
@@ -442,7 +445,8 @@ pub mod prelude {
         schedule::{ClothPlugin, ClothSystems},
         simulate::budget::ClothBudget,
         skin::{
-            ATTRIBUTE_CLOTH, ClothInertia, ClothMap, ClothOutfit, ClothSkin, ClothTeleport, ClothWornBy, TeleportMode,
+            ATTRIBUTE_CLOTH, ATTRIBUTE_CLOTH_BACKSTOP, ClothInertia, ClothMap, ClothOutfit, ClothSkin, ClothTeleport,
+            ClothWornBy, TeleportMode,
         },
         solver::{Ellipsoid, LevelPass, MeshError, Solid, TaperedCapsule},
         state::{

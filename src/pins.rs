@@ -17,8 +17,8 @@ pub use select::{PinPredicate, PinVertex};
 
 /// The vertex attribute that says which vertices of a model are pinned: those with 0.5 or more.
 ///
-/// Register it with Bevy's glTF plugin to read it from files, where its name is `_PIN`; Bevy drops the underscore:
-/// `GltfPlugin::default().add_custom_vertex_attribute("PIN", ATTRIBUTE_PIN)`.
+/// In glTF files its name is `_PIN`, in any format. Without the feature `gltf`, register it with Bevy's plugin, which drops the
+/// underscore: `GltfPlugin::default().add_custom_vertex_attribute("PIN", ATTRIBUTE_PIN)`.
 pub const ATTRIBUTE_PIN: MeshVertexAttribute = MeshVertexAttribute::new("Pin", 0x6472_6170_6550, VertexFormat::Float32);
 
 /// The pins of a cloth: groups of vertices and what they are fixed to. Change them at any time.

@@ -103,6 +103,8 @@ impl ClothPlugin {
 impl Plugin for ClothPlugin {
     fn build(&self, app: &mut App) {
         fabric::loader::register(app);
+        #[cfg(feature = "gltf")]
+        crate::gltf::register(app);
         app.init_resource::<surroundings::ClothGravity>()
             .init_resource::<simulate::budget::ClothBudget>()
             .init_resource::<simulate::budget::StepDuration>()

@@ -23,13 +23,18 @@ use crate::{
 /// The vertex attribute that says how far each vertex of clothes may be from where its skeleton has it, m: a max distance, times
 /// [`ClothMap::Painted::scale`]. 0 is fixed to the skeleton.
 ///
-/// Register it with Bevy's glTF plugin to read it from files, where its name is `_CLOTH`; Bevy drops the underscore:
-/// `GltfPlugin::default().add_custom_vertex_attribute("CLOTH", ATTRIBUTE_CLOTH)`.
+/// In glTF files its name is `_CLOTH`, in any format. Without the feature `gltf`, register it with Bevy's plugin, which drops the
+/// underscore: `GltfPlugin::default().add_custom_vertex_attribute("CLOTH", ATTRIBUTE_CLOTH)`.
 pub const ATTRIBUTE_CLOTH: MeshVertexAttribute =
     MeshVertexAttribute::new("Cloth", 0x6472_6170_6551, VertexFormat::Float32);
 
+/// The vertex attribute that says how far beneath the animated surface the backstop of each vertex begins, m: times
+/// [`ClothSkin::backstop`], if that is set. Below 0 there is none. In glTF files its name is `_CLOTH_BACKSTOP`, in any format.
+pub const ATTRIBUTE_CLOTH_BACKSTOP: MeshVertexAttribute =
+    MeshVertexAttribute::new("ClothBackstop", 0x6472_6170_6552, VertexFormat::Float32);
+
 /// Vertices that may be less than this far from their skeleton, m, are fixed to it.
-const FIXED: f32 = 1e-4;
+pub(crate) const FIXED: f32 = 1e-4;
 
 /// How closely a [`Cloth`](crate::prelude::Cloth) on a skinned mesh follows its skeleton. Without it, its pins do, and what is painted
 /// as [`ATTRIBUTE_CLOTH`].
@@ -54,7 +59,8 @@ pub struct ClothSkin {
     /// Largest distance of each vertex from where its skeleton has it, m. As painted in [`ATTRIBUTE_CLOTH`] by default, and
     /// infinite where nothing is.
     pub max_distance: ClothMap,
-    /// How far beneath the animated surface the backstop begins, m, 0 or more, `None` by default, for no backstop. 0 to 0.05.
+    /// How far beneath the animated surface the backstop begins, m, 0 or more, `None` by default, for no backstop. 0 to 0.05. Where
+    /// [`ATTRIBUTE_CLOTH_BACKSTOP`] is painted that counts, and this is a factor on it, 1 for none.
     #[reflect(@Parameter::not_negative("m", (0.0, 0.1)).entered((0.0, 10.0)).shown_as("mm", 1e3).titled("Backstop depth"))]
     pub backstop: Option<f32>,
     /// Radius of the backstop's ball, m, greater than 0, 0.1 by default: about that of the limb, so that cloth can slip off
@@ -144,8 +150,11 @@ impl ClothSkin {
 
     /// The limits of `count` particles, of which each vertex of `mesh` is one: the least of its vertices'.
     pub(crate) fn limits(&self, mesh: &Mesh, particle_of_vertex: &[u32], count: usize) -> ParticleLimits {
-        let backstop = self.backstop.map(|distance| Backstop { distance, radius: self.backstop_radius });
-        let limit = |max_distance| SkinLimit { max_distance, backstop };
+        let uniform = self.backstop.map(|distance| Backstop { distance, radius: self.backstop_radius });
+        let backstops = self.painted_backstops(mesh, particle_of_vertex, count).unwrap_or(vec![uniform; count]);
+        let limit = |max_distance| -> Vec<SkinLimit> {
+            backstops.iter().map(|&backstop| SkinLimit { max_distance, backstop }).collect()
+        };
         let (scale, missing) = match self.max_distance {
             ClothMap::Painted { scale, missing } => (scale, missing),
             ClothMap::Uniform(distance) => (0.0, distance),
@@ -154,9 +163,9 @@ impl ClothSkin {
         let Some(VertexAttributeValues::Float32(paint)) =
             mesh.try_attribute(ATTRIBUTE_CLOTH).ok().filter(|_| is_painted)
         else {
-            return ParticleLimits { limits: vec![limit(missing); count], badly_painted: None };
+            return ParticleLimits { limits: limit(missing), badly_painted: None };
         };
-        let mut limits = vec![limit(f32::INFINITY); count];
+        let mut limits = limit(f32::INFINITY);
         for (&paint, &particle) in
             paint.iter().zip(particle_of_vertex).filter(|(_, particle)| **particle != NO_PARTICLE)
         {
@@ -166,6 +175,28 @@ impl ClothSkin {
         }
         let is_bad = |paint: &f32| !paint.is_finite() || *paint < 0.0;
         ParticleLimits { limits, badly_painted: paint.iter().position(is_bad) }
+    }
+
+    /// The backstop of each particle, the nearest to the surface of its vertices', where a mesh has them painted.
+    fn painted_backstops(
+        &self,
+        mesh: &Mesh,
+        particle_of_vertex: &[u32],
+        count: usize,
+    ) -> Option<Vec<Option<Backstop>>> {
+        let Ok(VertexAttributeValues::Float32(paint)) = mesh.try_attribute(ATTRIBUTE_CLOTH_BACKSTOP) else {
+            return None;
+        };
+        let mut backstops: Vec<Option<Backstop>> = vec![None; count];
+        let is_any = |&(&paint, &particle): &(&f32, &u32)| paint >= 0.0 && paint.is_finite() && particle != NO_PARTICLE;
+        for (&paint, &particle) in paint.iter().zip(particle_of_vertex).filter(is_any) {
+            let distance = self.backstop.unwrap_or(1.0) * paint;
+            let known = &mut backstops[particle as usize];
+            if known.is_none_or(|known| known.distance > distance) {
+                *known = Some(Backstop { distance, radius: self.backstop_radius });
+            }
+        }
+        Some(backstops)
     }
 }
 
@@ -188,6 +219,19 @@ mod tests {
         assert_eq!(distances(&skin, &Triangle3d::default().into()), [7.0; 2], "nothing is painted");
         let uniform = ClothSkin { max_distance: ClothMap::Uniform(0.3), ..default() };
         assert_eq!(distances(&uniform, &mesh(vec![0.5, 0.25, 0.1])), [0.3; 2]);
+    }
+
+    #[test]
+    fn a_painted_backstop_counts_and_the_setting_is_a_factor_on_it() {
+        let paint = vec![0.02_f32, -1.0, 0.01];
+        let mesh = Mesh::from(Triangle3d::default()).with_inserted_attribute(ATTRIBUTE_CLOTH_BACKSTOP, paint);
+        let distances = |skin: ClothSkin, particles: &[u32]| {
+            let limits = skin.limits(&mesh, particles, 3).limits;
+            limits.iter().map(|limit| limit.backstop.map(|backstop| backstop.distance)).collect::<Vec<_>>()
+        };
+        assert_eq!(distances(ClothSkin::default(), &[0, 1, 2]), [Some(0.02), None, Some(0.01)]);
+        let doubled = ClothSkin { backstop: Some(2.0), ..default() };
+        assert_eq!(distances(doubled, &[0, 0, 0]), [Some(0.02), None, None], "the nearest counts");
     }
 
     #[test]

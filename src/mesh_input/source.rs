@@ -9,8 +9,8 @@ use crate::{error::ClothError, solver::SourceMesh};
 
 /// The vertex attribute that says which way the warp of a model runs: a direction in the mesh's own space, of any length.
 ///
-/// Register it with Bevy's glTF plugin to read it from files, where its name is `_WARP`; Bevy drops the underscore:
-/// `GltfPlugin::default().add_custom_vertex_attribute("WARP", ATTRIBUTE_WARP)`.
+/// In glTF files its name is `_WARP`, a vector in any format. Without the feature `gltf`, register it with Bevy's plugin, which drops
+/// the underscore: `GltfPlugin::default().add_custom_vertex_attribute("WARP", ATTRIBUTE_WARP)`.
 pub const ATTRIBUTE_WARP: MeshVertexAttribute =
     MeshVertexAttribute::new("Warp", 0x6472_6170_6557, VertexFormat::Float32x3);
 

@@ -131,8 +131,9 @@ impl Wind {
     }
 }
 
-/// What is remembered of a wind from step to step.
+/// What is remembered of a wind from step to step. A copy of the wind has nothing to remember.
 #[derive(Component, Clone, Copy, Debug, Default)]
+#[component(clone_behavior = Ignore)]
 pub(crate) struct WindMemory {
     /// The wind was left out and a warning said so.
     warned: bool,

@@ -1,0 +1,265 @@
+//! Custom properties: what an artist may write on objects, bones, meshes, materials and scenes.
+
+use bevy::prelude::*;
+use serde_json::Value;
+
+use super::report::{Report, nearest};
+use crate::{
+    fabric::Fabric,
+    pins::{ClothEdge, PinSelector},
+};
+
+/// What a property is written on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    Scene,
+    /// An object, a bone, an armature or an empty.
+    Node,
+    Mesh,
+    Material,
+}
+
+/// The properties of one of these, by what they mean.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Properties {
+    pub cloth: Option<WhatCloth>,
+    pub max_distance: Option<f32>,
+    pub backstop: Option<f32>,
+    pub backstop_radius: Option<f32>,
+    pub pull: Option<f32>,
+    pub self_collision: Option<bool>,
+    pub layers: Option<u32>,
+    pub mask: Option<u32>,
+    pub pin: Option<PinSelector>,
+    pub proxy: Option<String>,
+    pub body: Option<bool>,
+    pub collider: Option<WhatCollider>,
+    pub radius: Option<f32>,
+    pub wind: Option<f32>,
+}
+
+/// Whether something is cloth, and of what.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum WhatCloth {
+    No,
+    /// Of the default fabric, unless a mesh, a material or the scene names one.
+    Yes,
+    Preset(Box<Fabric>),
+    /// A file, from the folder of the glTF file, or from that of all assets if it begins with a slash.
+    File(String),
+}
+
+/// What an obstacle is like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum WhatCollider {
+    /// None, and no part of a body either.
+    None,
+    Capsule,
+    Box,
+    Sphere,
+    Hull,
+    Mesh,
+}
+
+/// A property.
+struct Key {
+    name: &'static str,
+    places: &'static [Place],
+    /// Reads it, or says what it has to be.
+    read: fn(&mut Properties, &Value) -> Result<(), String>,
+}
+
+const CLOTH: &[Place] = &[Place::Node, Place::Mesh, Place::Material, Place::Scene];
+const NODE: &[Place] = &[Place::Node];
+
+/// All of them. `docs/blender.md` has them as a table.
+const KEYS: [Key; 14] = [
+    Key { name: "cloth", places: CLOTH, read: |it, value| set(&mut it.cloth, what_cloth(value)) },
+    Key { name: "cloth_max_distance", places: CLOTH, read: |it, value| set(&mut it.max_distance, length(value)) },
+    Key { name: "cloth_backstop", places: CLOTH, read: |it, value| set(&mut it.backstop, length(value)) },
+    Key { name: "cloth_backstop_radius", places: CLOTH, read: |it, value| set(&mut it.backstop_radius, radius(value)) },
+    Key { name: "cloth_pull", places: CLOTH, read: |it, value| set(&mut it.pull, frequency(value)) },
+    Key { name: "cloth_self", places: CLOTH, read: |it, value| set(&mut it.self_collision, switch(value)) },
+    Key { name: "cloth_layers", places: CLOTH, read: |it, value| set(&mut it.layers, bits(value)) },
+    Key { name: "cloth_mask", places: CLOTH, read: |it, value| set(&mut it.mask, bits(value)) },
+    Key { name: "cloth_pin", places: CLOTH, read: |it, value| set(&mut it.pin, pin(value)) },
+    Key { name: "cloth_proxy", places: NODE, read: |it, value| set(&mut it.proxy, name(value)) },
+    Key { name: "cloth_body", places: NODE, read: |it, value| set(&mut it.body, switch(value)) },
+    Key { name: "cloth_collider", places: NODE, read: |it, value| set(&mut it.collider, what_collider(value)) },
+    Key { name: "cloth_radius", places: NODE, read: |it, value| set(&mut it.radius, radius(value)) },
+    Key { name: "cloth_wind", places: NODE, read: |it, value| set(&mut it.wind, speed(value)) },
+];
+
+impl Properties {
+    /// Reads the properties of something out of its extras. What can't be used is left out, with one warning each.
+    pub fn read(extras: &str, place: Place, subject: &str, report: &mut Report) -> Self {
+        let mut properties = Self::default();
+        // Extras may be any JSON, and most aren't ours.
+        let Ok(Value::Object(entries)) = serde_json::from_str(extras) else { return properties };
+        for (written, value) in &entries {
+            let Some(key) = KEYS.iter().find(|key| key.name == written) else {
+                if written.to_lowercase().starts_with("cloth") {
+                    let guess = nearest(written, KEYS.iter().map(|key| key.name)).unwrap_or("cloth");
+                    report.warn(subject, format_args!("no property is called {written}; did you mean {guess}?"));
+                }
+                continue;
+            };
+            if !key.places.contains(&place) {
+                let belongs = place_names(key.places);
+                report.warn(subject, format_args!("{written} does nothing here; write it on {belongs}"));
+            } else if let Err(rule) = (key.read)(&mut properties, value) {
+                report.warn(subject, format_args!("{written} is {value}, and it has to be {rule}"));
+            }
+        }
+        properties
+    }
+
+    /// These, and those of something `weaker` where there are none.
+    pub fn or(self, weaker: &Self) -> Self {
+        let names_none = matches!(self.cloth, None | Some(WhatCloth::Yes));
+        let cloth = if names_none { weaker.cloth.clone().or(self.cloth) } else { self.cloth };
+        let Self { max_distance, backstop, backstop_radius, pull, self_collision, layers, mask, .. } = self;
+        Self {
+            cloth,
+            max_distance: max_distance.or(weaker.max_distance),
+            backstop: backstop.or(weaker.backstop),
+            backstop_radius: backstop_radius.or(weaker.backstop_radius),
+            pull: pull.or(weaker.pull),
+            self_collision: self_collision.or(weaker.self_collision),
+            layers: layers.or(weaker.layers),
+            mask: mask.or(weaker.mask),
+            pin: self.pin.or_else(|| weaker.pin.clone()),
+            proxy: self.proxy.or_else(|| weaker.proxy.clone()),
+            body: self.body.or(weaker.body),
+            collider: self.collider.or(weaker.collider),
+            radius: self.radius.or(weaker.radius),
+            wind: self.wind.or(weaker.wind),
+        }
+    }
+
+    /// Whether they make something cloth.
+    pub fn is_cloth(&self) -> bool {
+        self.cloth.as_ref().is_some_and(|cloth| *cloth != WhatCloth::No)
+    }
+
+    /// The name of a property that means something only for cloth on an armature, if there is one.
+    pub fn of_skin(&self) -> Option<&'static str> {
+        [
+            ("cloth_max_distance", self.max_distance.is_some()),
+            ("cloth_backstop", self.backstop.is_some()),
+            ("cloth_backstop_radius", self.backstop_radius.is_some()),
+            ("cloth_pull", self.pull.is_some()),
+        ]
+        .into_iter()
+        .find_map(|(name, is_there)| is_there.then_some(name))
+    }
+
+    /// The name of a property that means something only for cloth, if there is one.
+    pub fn of_cloth(&self) -> Option<&'static str> {
+        let others = [
+            ("cloth_self", self.self_collision.is_some()),
+            ("cloth_layers", self.layers.is_some() && self.collider.is_none()),
+            ("cloth_mask", self.mask.is_some()),
+            ("cloth_pin", self.pin.is_some()),
+        ];
+        self.of_skin().or_else(|| others.into_iter().find_map(|(name, is_there)| is_there.then_some(name)))
+    }
+}
+
+fn place_names(places: &[Place]) -> String {
+    let names = places.iter().map(|place| match place {
+        Place::Scene => "the scene",
+        Place::Node => "an object or a bone",
+        Place::Mesh => "a mesh",
+        Place::Material => "a material",
+    });
+    names.collect::<Vec<_>>().join(", ")
+}
+
+fn set<T>(field: &mut Option<T>, value: Result<T, String>) -> Result<(), String> {
+    *field = Some(value?);
+    Ok(())
+}
+
+fn number(value: &Value) -> Option<f32> {
+    value.as_f64().map(|number| number as f32).filter(|number| number.is_finite())
+}
+
+fn length(value: &Value) -> Result<f32, String> {
+    number(value).filter(|&length| length >= 0.0).ok_or("a number of m, 0 or more".into())
+}
+
+fn radius(value: &Value) -> Result<f32, String> {
+    number(value).filter(|&radius| radius > 0.0).ok_or("a number of m, greater than 0".into())
+}
+
+fn frequency(value: &Value) -> Result<f32, String> {
+    number(value).filter(|&frequency| frequency >= 0.0).ok_or("a number of Hz, 0 or more".into())
+}
+
+fn speed(value: &Value) -> Result<f32, String> {
+    number(value).ok_or("a speed in m/s, along the object's own upward axis".into())
+}
+
+/// Yes or no, which older exporters write as 1 and 0.
+fn switch(value: &Value) -> Result<bool, String> {
+    match value.as_f64() {
+        Some(1.0) => Ok(true),
+        Some(0.0) => Ok(false),
+        _ => value.as_bool().ok_or("true or false".into()),
+    }
+}
+
+fn bits(value: &Value) -> Result<u32, String> {
+    let whole = value.as_f64().filter(|number| number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(number));
+    whole.map(|number| number as u32).ok_or("a whole number from 0 to 4294967295, one layer a bit".into())
+}
+
+fn name(value: &Value) -> Result<String, String> {
+    value.as_str().map(Into::into).ok_or("the name of an object".into())
+}
+
+fn what_cloth(value: &Value) -> Result<WhatCloth, String> {
+    let presets = || Fabric::PRESETS.map(|preset| preset.name);
+    let rule = || format!("true, false, one of {}, or a file that ends in .fabric.ron", presets().join(", "));
+    let Some(text) = value.as_str() else {
+        return switch(value).map(|is| if is { WhatCloth::Yes } else { WhatCloth::No }).map_err(|_| rule());
+    };
+    if text.ends_with(".fabric.ron") {
+        return Ok(WhatCloth::File(text.into()));
+    }
+    let name = text.to_lowercase().replace([' ', '-'], "_");
+    match Fabric::PRESETS.into_iter().find(|preset| preset.name == name) {
+        Some(preset) => Ok(WhatCloth::Preset(Box::new(preset.fabric))),
+        None => Err(nearest(&name, presets()).map_or_else(rule, |guess| format!("{}; did you mean {guess}?", rule()))),
+    }
+}
+
+fn what_collider(value: &Value) -> Result<WhatCollider, String> {
+    match value.as_str() {
+        Some("none") => Ok(WhatCollider::None),
+        Some("capsule") => Ok(WhatCollider::Capsule),
+        Some("box") => Ok(WhatCollider::Box),
+        Some("sphere") => Ok(WhatCollider::Sphere),
+        Some("hull") => Ok(WhatCollider::Hull),
+        Some("mesh") => Ok(WhatCollider::Mesh),
+        _ => Err("none, capsule, box, sphere, hull or mesh".into()),
+    }
+}
+
+fn pin(value: &Value) -> Result<PinSelector, String> {
+    let text = value.as_str().unwrap_or_default();
+    let (edge, is_corners) = match text.strip_suffix("_corners") {
+        Some(edge) => (edge, true),
+        None => (text, false),
+    };
+    let edge = match edge {
+        "corners" => return Ok(PinSelector::Corners),
+        "top" => ClothEdge::Top,
+        "bottom" => ClothEdge::Bottom,
+        "left" => ClothEdge::Left,
+        "right" => ClothEdge::Right,
+        _ => return Err("corners, or top, bottom, left or right, each of which may end in _corners".into()),
+    };
+    Ok(if is_corners { PinSelector::EdgeCorners(edge) } else { PinSelector::Edge(edge) })
+}
