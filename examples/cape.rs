@@ -1,5 +1,5 @@
-//! A cape and a skirt on a character that runs: `Cloth` on skinned meshes of a glTF file. Collar and waist are fixed to the skin, the
-//! rest may go as far from it as is painted in the file, and capsules from its own skin keep the character out of its clothes.
+//! A cape and a skirt on a character that runs. The glTF file says itself what is cloth, of which fabric, how far it may be from the
+//! skin, and that capsules from that skin keep the character out of its clothes: `docs/blender.md` tells how.
 
 mod common;
 
@@ -18,7 +18,7 @@ fn main() -> Result<AppExit> {
         .insert_resource(Running(run))
         .add_systems(Startup, (common::spawn_scenery, setup))
         .add_systems(PostUpdate, animate.in_set(AnimationSystems).before(TransformSystems::Propagate))
-        .add_observer(dress)
+        .add_observer(undress)
         .run())
 }
 
@@ -28,28 +28,17 @@ struct Running(Clip);
 
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     common::spawn_camera(&mut commands, Vec3::new(2.6, 1.5, -2.6), Vec3::new(0.0, 0.95, 0.0));
-    let character = WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset("mannequin.glb")));
-    // The tunic is skinned too, and isn't the body. Arms that swing through a cape would only hook on it.
-    let except = ["Tunic", "lower_arm.L", "lower_arm.R", "hand.L", "hand.R"];
-    commands.spawn((character, ClothBody { except: except.map(String::from).into(), ..default() }));
+    commands.spawn(WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset("mannequin.glb"))));
     // It runs on the spot, so the wind comes from ahead.
     commands.spawn(Wind { velocity: Vec3::new(0.3, 0.0, -4.0), gusts: 0.3, ..default() });
 }
 
-/// Makes cloth of what is named so once the scene is there. The cape that is seen is a finer mesh, which follows the one that is simulated.
-fn dress(ready: On<WorldInstanceReady>, names: Query<&Name>, children: Query<&Children>, mut commands: Commands) {
-    let nodes = || children.iter_descendants(ready.entity);
-    let named = |name: &str| nodes().find(|&node| names.get(node).is_ok_and(|own| own.as_str() == name));
-    let [Some(cape), Some(fine), Some(skirt), Some(tunic)] = ["Cape", "CapeFine", "Skirt", "Tunic"].map(named) else {
-        return error!("the mannequin lacks its clothes");
-    };
-    // The cape lies on the skirt.
-    let meeting = Cloth { self_collision: true, ..default() };
-    let backstop = ClothSkin { backstop: Some(0.01), backstop_radius: 0.3, ..default() };
-    commands.entity(cape).insert((meeting.clone(), Fabric::WOOL_FLANNEL, backstop, Visibility::Hidden));
-    commands.entity(fine).insert(ClothProxy::new(cape));
-    commands.entity(skirt).insert((meeting, Fabric::COTTON_WOVEN, ClothSkin::default()));
-    commands.entity(tunic).insert(Visibility::Hidden);
+/// Takes off the tunic, which is in the file too, once the scene is there.
+fn undress(ready: On<WorldInstanceReady>, names: Query<&Name>, children: Query<&Children>, mut commands: Commands) {
+    let parts = children.iter_descendants(ready.entity);
+    for tunic in parts.filter(|&part| names.get(part).is_ok_and(|name| name.as_str() == "Tunic")) {
+        commands.entity(tunic).despawn();
+    }
 }
 
 /// Poses the joints, as Bevy's `AnimationPlayer` does in a game.

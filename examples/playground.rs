@@ -13,7 +13,6 @@ use core::f32::consts::FRAC_PI_2;
 use bevy::{
     math::{ops, primitives::InfinitePlane3d},
     prelude::*,
-    world_serialization::WorldInstanceReady,
 };
 use bevy_drape::{
     debug::{ClothDebugPlugin, ClothDiagnosticsPlugin},
@@ -147,33 +146,14 @@ fn spawn_draped<S>(
     ));
 }
 
-/// A pole, and a model of which one mesh is to be cloth.
+/// A pole, and a model that says itself that it is cloth, of which fabric, and where it is held.
 fn spawn_flag(commands: &mut Commands, studio: &mut common::Studio, server: &AssetServer) {
     let foot = Vec3::new(1.25, 0.0, -0.9);
     studio.spawn_rod(commands, foot, foot + Vec3::Y * 2.5, 0.025);
-    commands
-        .spawn((
-            WorldAssetRoot(server.load(GltfAssetLabel::Scene(0).from_asset("flag.glb"))),
-            Transform::from_translation(foot + Vec3::new(0.03, 2.45, 0.0)),
-        ))
-        .observe(make_cloth_of_model);
-}
-
-/// Runs once the model is there: its meshes become cloth, pinned where its attribute says.
-fn make_cloth_of_model(
-    ready: On<WorldInstanceReady>,
-    mut commands: Commands,
-    children: Query<&Children>,
-    meshes: Query<(), With<Mesh3d>>,
-) {
-    for entity in children.iter_descendants(ready.entity).filter(|&entity| meshes.contains(entity)) {
-        commands.entity(entity).insert((
-            Cloth::default(),
-            // Stiff enough for the model's cells of 5 cm to show its folds.
-            Fabric { bending_rigidity: 60e-6, ..Fabric::POLYESTER_TABLECLOTH },
-            Pins::attribute(ATTRIBUTE_PIN),
-        ));
-    }
+    commands.spawn((
+        WorldAssetRoot(server.load(GltfAssetLabel::Scene(0).from_asset("flag.glb"))),
+        Transform::from_translation(foot + Vec3::new(0.03, 2.45, 0.0)),
+    ));
 }
 
 fn reset(keys: Res<ButtonInput<KeyCode>>, mut commands: Commands, cloths: Query<Entity, With<Cloth>>) {

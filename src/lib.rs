@@ -11,6 +11,7 @@
 //! - [Obstacles](#obstacles)
 //! - [Cloth on cloth](#cloth-on-cloth)
 //! - [Characters](#characters)
+//! - [Models from Blender](#models-from-blender)
 //! - [Dragging](#dragging)
 //! - [Panel](#panel)
 //! - [Debugging](#debugging)
@@ -46,9 +47,9 @@
 //!
 //! Any triangle mesh will do, from code or glTF, indexed or not. Vertices that share a position move as one particle
 //! and stay several vertices. Meshes that load late become cloth when they arrive, meshes that change are rebuilt, and
-//! the mesh asset is copied for each cloth. In a loaded scene, insert `Cloth` on the entity that has the `Mesh3d`, or on one above
-//! several: without a mesh of its own, it makes one cloth of all meshes below, sewn where they meet
-//! ([`ClothPartOf`](prelude::ClothPartOf)).
+//! the mesh asset is copied for each cloth. In a loaded scene, let [the file say so](#models-from-blender), or insert `Cloth` on the
+//! entity that has the `Mesh3d`, or on one above several: without a mesh of its own, it makes one cloth of all meshes below, sewn
+//! where they meet ([`ClothPartOf`](prelude::ClothPartOf)).
 //! Cloth takes least time on a mesh that is one rectangle or tube of quads, triangulated or not:
 //! [`ClothGrid`](prelude::ClothGrid) makes such.
 //!
@@ -88,8 +89,8 @@
 //! ```
 //!
 //! Tethers keep every particle within the cloth's own length of its pins, plus
-//! [`tether_slack`](prelude::Cloth::tether_slack): they keep pinned cloth from stretching like rubber. A glTF model can
-//! say itself what is pinned or where its warp runs, by the attributes [`_PIN`](prelude::ATTRIBUTE_PIN) and
+//! [`tether_slack`](prelude::Cloth::tether_slack): they keep pinned cloth from stretching like rubber. A glTF model [can
+//! say itself](#models-from-blender) what is pinned or where its warp runs, by the attributes [`_PIN`](prelude::ATTRIBUTE_PIN) and
 //! [`_WARP`](prelude::ATTRIBUTE_WARP).
 //!
 //! # Wind and forces
@@ -193,6 +194,24 @@
 //! along ([`ClothTeleport`](prelude::ClothTeleport)).
 //! [`teleport_cloth`](prelude::ClothCommands::teleport_cloth) on the root of a character takes along its cloths,
 //! obstacles and pins; [`shift_world`](prelude::WorldShiftCommands::shift_world) is for floating origins.
+//!
+//! # Models from Blender
+//!
+//! With the feature `gltf`, which is on by default, a glTF file says itself what is cloth. An artist writes the custom property
+//! `cloth` on an object, a mesh or a material, paints `_CLOTH` on its vertices, and exports both; the game spawns the scene.
+//!
+//! ```no_run
+//! # use bevy::prelude::*;
+//! fn spawn_hero(mut commands: Commands, assets: Res<AssetServer>) {
+//!     commands.spawn(WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset("hero.glb")))); // in a cape that is cloth
+//! }
+//! ```
+//!
+//! What is in the file are the components of this page, in its scene: [`Cloth`](prelude::Cloth), [`Fabric`](prelude::Fabric) or
+//! [`FabricHandle`](prelude::FabricHandle), [`Pins`](prelude::Pins), [`ClothSkin`](prelude::ClothSkin),
+//! [`ClothBody`](prelude::ClothBody), [`ClothCollider`](prelude::ClothCollider) and [`Wind`](prelude::Wind). Instances have them, a
+//! scene that is reloaded has what its file says then, and code may change or remove them. `docs/blender.md` in the repository has
+//! all properties, and where Blender's exporter is told to write them.
 //!
 //! # Dragging
 //!
@@ -353,6 +372,7 @@
 //! |---|---|
 //! | `parallel` (default) | steps several cloths side by side, and shares a large one between threads; without it everything runs on one thread, with the same bits |
 //! | `mesh_colliders` (default) | meshes, convex hulls and height fields as obstacles |
+//! | `gltf` (default) | glTF files [say themselves what is cloth](#models-from-blender) |
 //! | `picking` (default) | [`ClothPickingPlugin`](prelude::ClothPickingPlugin), on `bevy_picking` |
 //! | `avian` | [`ClothAvianPlugin`](prelude::ClothAvianPlugin), for Avian 0.7 |
 //! | `rapier` | [`ClothRapierPlugin`](prelude::ClothRapierPlugin), for bevy_rapier3d 0.36 |

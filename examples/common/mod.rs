@@ -113,7 +113,8 @@ fn shared_plugins() -> bevy::app::PluginGroupBuilder {
             file_path: concat!(env!("CARGO_MANIFEST_DIR"), "/assets").to_owned(),
             ..default()
         })
-        // The attributes are `_PIN` and `_CLOTH` in files: the loader strips the leading underscore before it compares.
+        // The plugin reads `_PIN` and `_CLOTH` by itself. Known to Bevy's loader, which strips the underscore, they aren't
+        // warned of.
         .set(
             GltfPlugin::default()
                 .add_custom_vertex_attribute("PIN", ATTRIBUTE_PIN)

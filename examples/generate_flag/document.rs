@@ -35,7 +35,8 @@ fn document(primitive: &Value, picture: usize) -> Value {
         "asset": { "version": "2.0", "generator": "bevy_drape, examples/generate_flag" },
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
-        "nodes": [{ "name": "Flag", "mesh": 0 }],
+        // The fabric is a file beside this one.
+        "nodes": [{ "name": "Flag", "mesh": 0, "extras": { "cloth": super::FABRIC } }],
         "meshes": [{ "name": "Flag", "primitives": [primitive] }],
         "materials": [{
             "name": "Bunting",

@@ -36,6 +36,7 @@ pub fn cape(anatomy: &Anatomy) -> Model {
         primitives: vec![sheet.primitive(materials::CAPE)],
         extras: json!({
             "cloth": "wool_flannel", "cloth_max_distance": 1.0, "cloth_backstop": 0.01, "cloth_backstop_radius": 0.3,
+            "cloth_self": true,
         }),
     }
 }

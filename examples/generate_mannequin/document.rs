@@ -68,6 +68,10 @@ fn joint(index: usize) -> Value {
     if !children.is_empty() {
         node["children"] = children.into();
     }
+    // Arms that swing through a cape would hook on it.
+    if ["lower_arm", "hand"].iter().any(|limb| joint.name.starts_with(limb)) {
+        node["extras"] = json!({ "cloth_collider": "none" });
+    }
     node
 }
 

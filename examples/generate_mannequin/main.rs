@@ -15,7 +15,8 @@
 //! - `Tunic`: two materials, cloth and trim, that meet in vertices of the same bits.
 //!
 //! Garments have the vertex attribute `_CLOTH`, from 0 where the skin holds them to 1 where they are loose, and extras
-//! such as `cloth` (the fabric) and `cloth_max_distance` (m).
+//! such as `cloth` (the fabric) and `cloth_max_distance` (m). Those of lower arms and hands keep them out of the body.
+//! `docs/blender.md` tells of all of these.
 //!
 //! Its clips are loops in place: `idle`, `walk` (at 1.4 m/s the soles stand still), `run` (5 m/s), `jump` and `sit`
 //! (on a seat 0.42 m high), and `turn`, which isn't one: half a turn to the left in 0.25 s. The game moves the model;

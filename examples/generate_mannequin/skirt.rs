@@ -39,6 +39,6 @@ pub fn skirt(anatomy: &Anatomy) -> Model {
     Model {
         name: "Skirt",
         primitives: vec![sheet.primitive(materials::SKIRT)],
-        extras: json!({ "cloth": "cotton_woven", "cloth_max_distance": 0.5 }),
+        extras: json!({ "cloth": "cotton_woven", "cloth_max_distance": 0.5, "cloth_self": true }),
     }
 }

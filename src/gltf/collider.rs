@@ -70,7 +70,7 @@ impl Scenery<'_, '_> {
     fn collide_by_solid(&mut self, node: &Node, (shape, transform): (ClothCollider, Transform)) {
         let name = format!("{} collider", node::name(self.world, node.entity));
         let collider = in_layers_of(node, shape);
-        self.world.spawn((Name::new(name), collider, transform, Visibility::default(), ChildOf(node.entity)));
+        self.world.spawn((Name::new(name), collider, transform, ChildOf(node.entity)));
     }
 
     /// The box around the parts of a node, in its own space. None for one without a mesh.

@@ -1,5 +1,7 @@
 //! What Bevy's loader shows us of a file, stage by stage.
 
+use std::collections::BTreeMap;
+
 use bevy::{
     asset::LoadContext,
     gltf::{
@@ -21,7 +23,7 @@ use super::{
 #[derive(Clone, Debug, Default)]
 pub(super) struct ClothHandler {
     /// What is painted on the primitives of the mesh that is being read, by their numbers.
-    paint: HashMap<usize, Paint>,
+    paint: BTreeMap<usize, Paint>,
     /// The same of all meshes so far, by the labels of their assets.
     painted: HashMap<String, Painted>,
     report: Report,
@@ -55,7 +57,7 @@ impl GltfExtensionHandler for ClothHandler {
     }
 
     fn on_gltf_mesh(&mut self, context: &mut LoadContext<'_>, mesh: &gltf::Mesh, _handle: Handle<GltfMesh>) {
-        for (number, paint) in self.paint.drain() {
+        for (number, paint) in core::mem::take(&mut self.paint) {
             let label = GltfAssetLabel::Primitive { mesh: mesh.index(), primitive: number }.to_string();
             let made = context.get_labeled(&label).and_then(|asset| asset.get::<Mesh>());
             let Some(mut painted_mesh) = made.cloned() else { continue };

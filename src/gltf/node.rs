@@ -36,7 +36,7 @@ pub(super) fn bones(world: &mut World) -> HashSet<Entity> {
     skins.iter(world).flat_map(|skin| skin.joints.iter().copied()).collect()
 }
 
-/// All nodes of a scene that something is written on, or that have a mesh, in the order of the file.
+/// All nodes of a scene, always in the same order.
 pub(super) fn nodes(world: &mut World, bones: &HashSet<Entity>, report: &mut Report) -> Vec<Node> {
     let mut entities = world.query_filtered::<Entity, (With<Transform>, With<ChildOf>, Without<Mesh3d>)>();
     let mut entities: Vec<Entity> = entities.iter(world).collect();

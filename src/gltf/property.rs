@@ -116,8 +116,12 @@ impl Properties {
 
     /// These, and those of something `weaker` where there are none.
     pub fn or(self, weaker: &Self) -> Self {
-        let names_none = matches!(self.cloth, None | Some(WhatCloth::Yes));
-        let cloth = if names_none { weaker.cloth.clone().or(self.cloth) } else { self.cloth };
+        let cloth = match (self.cloth, &weaker.cloth) {
+            // It is left open of which fabric.
+            (Some(WhatCloth::Yes), Some(of @ (WhatCloth::Preset(_) | WhatCloth::File(_)))) => Some(of.clone()),
+            (None, weaker) => weaker.clone(),
+            (stronger, _) => stronger,
+        };
         let Self { max_distance, backstop, backstop_radius, pull, self_collision, layers, mask, .. } = self;
         Self {
             cloth,
@@ -262,4 +266,40 @@ fn pin(value: &Value) -> Result<PinSelector, String> {
         _ => return Err("corners, or top, bottom, left or right, each of which may end in _corners".into()),
     };
     Ok(if is_corners { PinSelector::EdgeCorners(edge) } else { PinSelector::Edge(edge) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(extras: &str) -> Properties {
+        Properties::read(extras, Place::Node, "object", &mut Report::default())
+    }
+
+    #[test]
+    fn the_page_for_artists_has_every_property() {
+        let page = include_str!("../../docs/blender.md");
+        for key in KEYS {
+            assert!(page.contains(&format!("\n| `{}` |", key.name)), "{}", key.name);
+        }
+        assert!(Fabric::PRESETS.iter().all(|preset| page.contains(&format!("`{}`", preset.name))));
+    }
+
+    #[test]
+    fn the_stronger_counts_but_a_fabric_before_none() {
+        let (silk, denim) = (read(r#"{"cloth": "silk"}"#), read(r#"{"cloth": "denim", "cloth_pull": 2}"#));
+        assert_eq!(read(r#"{"cloth": true}"#).or(&silk).cloth, silk.cloth);
+        assert_eq!(silk.clone().or(&denim), Properties { pull: Some(2.0), ..silk.clone() });
+        assert!(!read(r#"{"cloth": false}"#).or(&silk).is_cloth());
+        assert_eq!(read(r#"{"cloth": true}"#).or(&Properties::default()).cloth, Some(WhatCloth::Yes));
+        assert_eq!(read(r#"{"cloth": 1}"#).or(&read(r#"{"cloth": false}"#)).cloth, Some(WhatCloth::Yes));
+    }
+
+    #[test]
+    fn names_of_fabrics_may_be_written_as_people_do() {
+        for name in ["wool_flannel", "Wool Flannel", "wool-flannel"] {
+            let fabric = Box::new(Fabric::WOOL_FLANNEL);
+            assert_eq!(what_cloth(&name.into()), Ok(WhatCloth::Preset(fabric)), "{name}");
+        }
+    }
 }

@@ -31,6 +31,8 @@ mod far_away;
 mod floating_origin;
 mod forces;
 mod garments;
+#[cfg(feature = "gltf")]
+mod gltf;
 mod grabs;
 mod gravity;
 mod jerks;

@@ -22,6 +22,11 @@ fn embodied() -> (App, Entity) {
     let mut app = spawned_with(ClothPlugin::new(Update));
     let mut roots = app.world_mut().query_filtered::<Entity, (With<Children>, Without<ChildOf>)>();
     let root = roots.single(app.world()).expect("one scene");
+    // Of all of its limbs, not only of those that its file asks for.
+    let mut bodies = app.world_mut().query_filtered::<Entity, With<ClothBody>>();
+    for body in bodies.iter(app.world()).collect::<Vec<_>>() {
+        app.world_mut().entity_mut(body).remove::<ClothBody>();
+    }
     let except = CLOTHES.map(String::from).to_vec();
     app.world_mut().entity_mut(root).insert(ClothBody { except, ..default() });
     run(&mut app, 1);
