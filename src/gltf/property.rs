@@ -4,10 +4,9 @@ use bevy::prelude::*;
 use serde_json::Value;
 
 use super::report::{Report, nearest};
-use crate::{
-    fabric::Fabric,
-    pins::{ClothEdge, PinSelector},
-};
+use crate::{fabric::Fabric, pins::PinSelector};
+
+mod value;
 
 /// What a property is written on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,20 +73,20 @@ const NODE: &[Place] = &[Place::Node];
 
 /// All of them. `docs/blender.md` has them as a table.
 const KEYS: [Key; 14] = [
-    Key { name: "cloth", places: CLOTH, read: |it, value| set(&mut it.cloth, what_cloth(value)) },
-    Key { name: "cloth_max_distance", places: CLOTH, read: |it, value| set(&mut it.max_distance, length(value)) },
-    Key { name: "cloth_backstop", places: CLOTH, read: |it, value| set(&mut it.backstop, length(value)) },
-    Key { name: "cloth_backstop_radius", places: CLOTH, read: |it, value| set(&mut it.backstop_radius, radius(value)) },
-    Key { name: "cloth_pull", places: CLOTH, read: |it, value| set(&mut it.pull, frequency(value)) },
-    Key { name: "cloth_self", places: CLOTH, read: |it, value| set(&mut it.self_collision, switch(value)) },
-    Key { name: "cloth_layers", places: CLOTH, read: |it, value| set(&mut it.layers, bits(value)) },
-    Key { name: "cloth_mask", places: CLOTH, read: |it, value| set(&mut it.mask, bits(value)) },
-    Key { name: "cloth_pin", places: CLOTH, read: |it, value| set(&mut it.pin, pin(value)) },
-    Key { name: "cloth_proxy", places: NODE, read: |it, value| set(&mut it.proxy, name(value)) },
-    Key { name: "cloth_body", places: NODE, read: |it, value| set(&mut it.body, switch(value)) },
-    Key { name: "cloth_collider", places: NODE, read: |it, value| set(&mut it.collider, what_collider(value)) },
-    Key { name: "cloth_radius", places: NODE, read: |it, value| set(&mut it.radius, radius(value)) },
-    Key { name: "cloth_wind", places: NODE, read: |it, value| set(&mut it.wind, speed(value)) },
+    Key { name: "cloth", places: CLOTH, read: |it, v| set(&mut it.cloth, value::what_cloth(v)) },
+    Key { name: "cloth_max_distance", places: CLOTH, read: |it, v| set(&mut it.max_distance, value::length(v)) },
+    Key { name: "cloth_backstop", places: CLOTH, read: |it, v| set(&mut it.backstop, value::length(v)) },
+    Key { name: "cloth_backstop_radius", places: CLOTH, read: |it, v| set(&mut it.backstop_radius, value::radius(v)) },
+    Key { name: "cloth_pull", places: CLOTH, read: |it, v| set(&mut it.pull, value::frequency(v)) },
+    Key { name: "cloth_self", places: CLOTH, read: |it, v| set(&mut it.self_collision, value::switch(v)) },
+    Key { name: "cloth_layers", places: CLOTH, read: |it, v| set(&mut it.layers, value::bits(v)) },
+    Key { name: "cloth_mask", places: CLOTH, read: |it, v| set(&mut it.mask, value::bits(v)) },
+    Key { name: "cloth_pin", places: CLOTH, read: |it, v| set(&mut it.pin, value::pin(v)) },
+    Key { name: "cloth_proxy", places: NODE, read: |it, v| set(&mut it.proxy, value::name(v)) },
+    Key { name: "cloth_body", places: NODE, read: |it, v| set(&mut it.body, value::switch(v)) },
+    Key { name: "cloth_collider", places: NODE, read: |it, v| set(&mut it.collider, value::what_collider(v)) },
+    Key { name: "cloth_radius", places: NODE, read: |it, v| set(&mut it.radius, value::radius(v)) },
+    Key { name: "cloth_wind", places: NODE, read: |it, v| set(&mut it.wind, value::speed(v)) },
 ];
 
 impl Properties {
@@ -185,89 +184,6 @@ fn set<T>(field: &mut Option<T>, value: Result<T, String>) -> Result<(), String>
     Ok(())
 }
 
-fn number(value: &Value) -> Option<f32> {
-    value.as_f64().map(|number| number as f32).filter(|number| number.is_finite())
-}
-
-fn length(value: &Value) -> Result<f32, String> {
-    number(value).filter(|&length| length >= 0.0).ok_or("a number of m, 0 or more".into())
-}
-
-fn radius(value: &Value) -> Result<f32, String> {
-    number(value).filter(|&radius| radius > 0.0).ok_or("a number of m, greater than 0".into())
-}
-
-fn frequency(value: &Value) -> Result<f32, String> {
-    number(value).filter(|&frequency| frequency >= 0.0).ok_or("a number of Hz, 0 or more".into())
-}
-
-fn speed(value: &Value) -> Result<f32, String> {
-    number(value).ok_or("a speed in m/s, along the object's own upward axis".into())
-}
-
-/// Yes or no, which older exporters write as 1 and 0.
-fn switch(value: &Value) -> Result<bool, String> {
-    match value.as_f64() {
-        Some(1.0) => Ok(true),
-        Some(0.0) => Ok(false),
-        _ => value.as_bool().ok_or("true or false".into()),
-    }
-}
-
-fn bits(value: &Value) -> Result<u32, String> {
-    let whole = value.as_f64().filter(|number| number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(number));
-    whole.map(|number| number as u32).ok_or("a whole number from 0 to 4294967295, one layer a bit".into())
-}
-
-fn name(value: &Value) -> Result<String, String> {
-    value.as_str().map(Into::into).ok_or("the name of an object".into())
-}
-
-fn what_cloth(value: &Value) -> Result<WhatCloth, String> {
-    let presets = || Fabric::PRESETS.map(|preset| preset.name);
-    let rule = || format!("true, false, one of {}, or a file that ends in .fabric.ron", presets().join(", "));
-    let Some(text) = value.as_str() else {
-        return switch(value).map(|is| if is { WhatCloth::Yes } else { WhatCloth::No }).map_err(|_| rule());
-    };
-    if text.ends_with(".fabric.ron") {
-        return Ok(WhatCloth::File(text.into()));
-    }
-    let name = text.to_lowercase().replace([' ', '-'], "_");
-    match Fabric::PRESETS.into_iter().find(|preset| preset.name == name) {
-        Some(preset) => Ok(WhatCloth::Preset(Box::new(preset.fabric))),
-        None => Err(nearest(&name, presets()).map_or_else(rule, |guess| format!("{}; did you mean {guess}?", rule()))),
-    }
-}
-
-fn what_collider(value: &Value) -> Result<WhatCollider, String> {
-    match value.as_str() {
-        Some("none") => Ok(WhatCollider::None),
-        Some("capsule") => Ok(WhatCollider::Capsule),
-        Some("box") => Ok(WhatCollider::Box),
-        Some("sphere") => Ok(WhatCollider::Sphere),
-        Some("hull") => Ok(WhatCollider::Hull),
-        Some("mesh") => Ok(WhatCollider::Mesh),
-        _ => Err("none, capsule, box, sphere, hull or mesh".into()),
-    }
-}
-
-fn pin(value: &Value) -> Result<PinSelector, String> {
-    let text = value.as_str().unwrap_or_default();
-    let (edge, is_corners) = match text.strip_suffix("_corners") {
-        Some(edge) => (edge, true),
-        None => (text, false),
-    };
-    let edge = match edge {
-        "corners" => return Ok(PinSelector::Corners),
-        "top" => ClothEdge::Top,
-        "bottom" => ClothEdge::Bottom,
-        "left" => ClothEdge::Left,
-        "right" => ClothEdge::Right,
-        _ => return Err("corners, or top, bottom, left or right, each of which may end in _corners".into()),
-    };
-    Ok(if is_corners { PinSelector::EdgeCorners(edge) } else { PinSelector::Edge(edge) })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -293,13 +209,5 @@ mod tests {
         assert!(!read(r#"{"cloth": false}"#).or(&silk).is_cloth());
         assert_eq!(read(r#"{"cloth": true}"#).or(&Properties::default()).cloth, Some(WhatCloth::Yes));
         assert_eq!(read(r#"{"cloth": 1}"#).or(&read(r#"{"cloth": false}"#)).cloth, Some(WhatCloth::Yes));
-    }
-
-    #[test]
-    fn names_of_fabrics_may_be_written_as_people_do() {
-        for name in ["wool_flannel", "Wool Flannel", "wool-flannel"] {
-            let fabric = Box::new(Fabric::WOOL_FLANNEL);
-            assert_eq!(what_cloth(&name.into()), Ok(WhatCloth::Preset(fabric)), "{name}");
-        }
     }
 }
