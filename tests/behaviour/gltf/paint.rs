@@ -53,7 +53,10 @@ fn paint_of_every_format_says_the_same() {
             file.json["accessors"][accessor]["type"] = json!("VEC3");
             file.json["bufferViews"][view]["byteStride"] = json!(4);
         }),
-        looseness("short.glb", scalar(whole(32_767.0).flat_map(|value| (value as i16).to_le_bytes()).collect(), SHORT)),
+        looseness(
+            "short_numbers.glb",
+            scalar(whole(32_767.0).flat_map(|value| (value as i16).to_le_bytes()).collect(), SHORT),
+        ),
         looseness("byte.glb", scalar(whole(127.0).map(|value| value as u8).collect(), BYTE)),
     ];
     for found in found {

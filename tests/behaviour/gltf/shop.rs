@@ -56,8 +56,9 @@ fn log() -> &'static Log {
 pub fn warnings(file: &str) -> Vec<String> {
     let text = log().0.lock().expect("no test fails while it writes").clone();
     let text = String::from_utf8(text).expect("text");
-    let lines = text.lines().filter(|line| line.contains("WARN") && line.contains(file));
-    lines.map(|line| line.split_once(file).expect("its name").1.trim_start_matches(", ").to_owned()).collect()
+    let name = format!(": {file}, ");
+    let warnings = text.lines().filter(|line| line.contains("WARN"));
+    warnings.filter_map(|line| Some(line.split_once(&name)?.1.to_owned())).collect()
 }
 
 /// How many scenes are there.
@@ -135,6 +136,15 @@ impl Shop {
         shop.write(path, file);
         let root = shop.spawn(path, Transform::default());
         (shop, root)
+    }
+
+    /// Loads a file, and waits until it is there.
+    pub fn load(&mut self, path: &str) -> Handle<Gltf> {
+        let server = self.app.world().resource::<AssetServer>().clone();
+        let file = server.load(path.to_owned());
+        wait_for(&mut self.app, |_| server.is_loaded(&file));
+        run(&mut self.app, 5);
+        file
     }
 
     /// Waits for another scene: one that is reloaded.

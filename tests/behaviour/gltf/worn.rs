@@ -97,10 +97,10 @@ fn the_mannequin_is_dressed_by_its_file() {
     let mut found: Vec<_> = cloths
         .query(app.world())
         .iter()
-        .map(|(_, node, status, fabric)| (name(node), status.clone(), fabric.clone()))
+        .map(|(_, node, status, fabric)| (name(node), status.is_running(), fabric.clone()))
         .collect();
     found.sort_by(|one, other| one.0.cmp(&other.0));
-    let of = |name: &str, fabric: Fabric| (name.to_owned(), ClothStatus::Ready, fabric);
+    let of = |name: &str, fabric: Fabric| (name.to_owned(), true, fabric);
     let expected = [
         of("Cape", Fabric::WOOL_FLANNEL),
         of("Skirt", Fabric::COTTON_WOVEN),
