@@ -23,7 +23,7 @@ fn main() -> Result<AppExit> {
         .add_systems(Startup, (common::spawn_scenery, setup))
         .add_systems(Update, change)
         .add_systems(PostUpdate, animate.in_set(AnimationSystems).before(TransformSystems::Propagate))
-        .add_observer(dress)
+        .add_observer(leave_piece)
         .run())
 }
 
@@ -41,9 +41,7 @@ struct Piece(&'static str);
 
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     common::spawn_camera(&mut commands, Vec3::new(1.5, 1.3, 2.9), Vec3::new(0.0, 0.95, 0.0));
-    let except = ["lower_arm.L", "lower_arm.R", "hand.L", "hand.R"].map(String::from).into();
-    let body = ClothBody { except, ..default() };
-    let character = commands.spawn((model(&assets), Piece("Body"), Character, body)).id();
+    let character = commands.spawn((model(&assets), Piece("Body"), Character)).id();
     commands.spawn((model(&assets), Piece("Tunic"), ClothWornBy(character), ChildOf(character)));
 }
 
@@ -73,8 +71,8 @@ fn change(
     }
 }
 
-/// Leaves of a model what is of use, and makes clothes cloth: a garment of all meshes below their node.
-fn dress(
+/// Leaves of a model what is of use. Its file says itself what is cloth, and that the tunic's two materials are one garment.
+fn leave_piece(
     ready: On<WorldInstanceReady>,
     pieces: Query<&Piece>,
     names: Query<&Name>,
@@ -83,19 +81,15 @@ fn dress(
 ) {
     let Ok(&Piece(piece)) = pieces.get(ready.entity) else { return };
     for node in children.iter_descendants(ready.entity) {
-        let skin = |scale| ClothSkin { max_distance: ClothMap::Painted { scale, missing: 0.0 }, ..default() };
-        let fabric = match names.get(node).map_or("", Name::as_str) {
-            name if name != piece && ["Body", "CapeFine"].iter().chain(&CLOTHES).any(|&other| other == name) => {
-                commands.entity(node).despawn();
-                continue;
-            }
-            "Cape" => (Fabric::WOOL_FLANNEL, ClothSkin { backstop: Some(0.01), backstop_radius: 0.3, ..skin(1.0) }),
-            "Skirt" => (Fabric::COTTON_WOVEN, skin(1.0)),
-            "Tunic" => (Fabric::COTTON_JERSEY, ClothSkin { backstop: Some(0.005), backstop_radius: 0.2, ..skin(0.2) }),
-            _ => continue,
-        };
-        // What is worn over other clothes lies on them.
-        commands.entity(node).insert((Cloth { self_collision: true, ..default() }, fabric));
+        let name = names.get(node).map_or("", Name::as_str);
+        let is_other = name != piece && (name == "Body" || CLOTHES.contains(&name));
+        // The fine cape is worn with the coarse one that it follows.
+        if is_other || name == "CapeFine" && piece != "Cape" {
+            commands.entity(node).despawn();
+        } else if piece != "Body" {
+            // The armature of clothes has no body.
+            commands.entity(node).try_remove::<ClothBody>();
+        }
     }
 }
 

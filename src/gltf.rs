@@ -8,6 +8,7 @@ mod handler;
 mod node;
 mod paint;
 mod property;
+mod proxy;
 mod report;
 mod scene;
 
@@ -17,6 +18,7 @@ use crate::{
     cloth::Cloth,
     fabric::{Fabric, handle::FabricHandle},
     pins::Pins,
+    proxy::ClothProxy,
     skin::ClothSkin,
     surroundings::{body::ClothBody, collider::ClothCollider, wind::Wind},
 };
@@ -37,6 +39,7 @@ pub(crate) fn register(app: &mut App) {
         .register_type::<FabricHandle>()
         .register_type::<Pins>()
         .register_type::<ClothSkin>()
+        .register_type::<ClothProxy>()
         .register_type::<ClothBody>()
         .register_type::<ClothCollider>()
         .register_type::<Wind>();

@@ -15,17 +15,25 @@ use crate::{
     skin::{ClothMap, ClothSkin, FIXED},
 };
 
+/// What is to be one cloth: a primitive of an object, or all of them, as a garment.
+struct Piece<'a> {
+    /// The primitive's entity, or that of the object.
+    entity: Entity,
+    parts: &'a [Part],
+    properties: Properties,
+}
+
 impl Scenery<'_, '_> {
-    /// Makes cloth of a node's mesh, where it, its mesh, or a material says so. What it leaves open the whole scene may say. Whether
-    /// any is.
-    pub(super) fn make_garment(&mut self, node: &Node, of_all: &Properties, bones: &HashSet<Entity>) -> bool {
-        let mut is_any = false;
-        for part in cloth_parts(node) {
+    /// Makes cloth of an object's mesh, where it, its mesh, or a material says so. What it leaves open the whole scene may say. Returns the
+    /// entities that are cloth.
+    pub(super) fn make_garment(&mut self, node: &Node, of_all: &Properties, bones: &HashSet<Entity>) -> Vec<Entity> {
+        let pieces = self.pieces(node);
+        for piece in &pieces {
+            self.make_cloth(node, piece, &piece.properties.clone().or(of_all), bones);
+        }
+        for part in &node.parts {
             let properties = node.properties.clone().or(&part.properties);
-            if properties.is_cloth() {
-                is_any = true;
-                self.make_cloth(node, part, &properties.or(of_all), bones);
-            } else if properties.cloth.is_none()
+            if properties.cloth.is_none()
                 && let Some(name) = properties.of_cloth()
             {
                 self.report
@@ -39,12 +47,50 @@ impl Scenery<'_, '_> {
                 format_args!("{name} does nothing where there is no mesh; write it on an object that has one"),
             );
         }
-        is_any
+        pieces.into_iter().map(|piece| piece.entity).collect()
     }
 
-    fn make_cloth(&mut self, node: &Node, part: &Part, properties: &Properties, bones: &HashSet<Entity>) {
-        let painted = self.painted_on(part.entity);
-        let timing = if !part.is_skinned && self.hangs_on(node.entity, bones) {
+    /// What becomes cloth of an object. Its materials make one garment, if all of them are the same cloth; else each is cloth for itself.
+    fn pieces<'a>(&mut self, node: &'a Node) -> Vec<Piece<'a>> {
+        let piece = |part: &'a Part| {
+            let properties = node.properties.clone().or(&part.properties);
+            let is_cloth = properties.is_cloth();
+            is_cloth.then(|| Piece { entity: part.entity, parts: core::slice::from_ref(part), properties })
+        };
+        let mut pieces: Vec<Piece> = node.parts.iter().filter_map(piece).collect();
+        let is_one = pieces.len() > 1
+            && pieces.len() == node.parts.len()
+            && pieces.iter().all(|piece| piece.properties == pieces[0].properties);
+        if is_one && self.has_other_meshes(node) {
+            self.report.warn(
+                &node.subject,
+                "its materials are a cloth each, as it has objects with meshes below it, which would be sewn to it; move them elsewhere",
+            );
+        } else if is_one {
+            let properties = pieces.swap_remove(0).properties;
+            pieces = vec![Piece { entity: node.entity, parts: &node.parts, properties }];
+        }
+        pieces
+    }
+
+    /// Whether there are meshes below an object that aren't its own.
+    fn has_other_meshes(&self, node: &Node) -> bool {
+        let below = |entity: Entity| self.world.get::<Children>(entity).into_iter().flatten().copied();
+        let mut next: Vec<Entity> = below(node.entity).collect();
+        while let Some(entity) = next.pop() {
+            let is_own = node.parts.iter().any(|part| part.entity == entity);
+            if self.world.get::<Mesh3d>(entity).is_some() && !is_own {
+                return true;
+            }
+            next.extend(below(entity));
+        }
+        false
+    }
+
+    fn make_cloth(&mut self, node: &Node, piece: &Piece, properties: &Properties, bones: &HashSet<Entity>) {
+        let painted = Painted::joined(piece.parts.iter().map(|part| self.painted_on(part.entity)));
+        let is_skinned = piece.parts.iter().all(|part| part.is_skinned);
+        let timing = if !is_skinned && self.hangs_on(node.entity, bones) {
             ClothTiming::Late // with the animation that moves it
         } else {
             ClothTiming::Auto
@@ -57,14 +103,14 @@ impl Scenery<'_, '_> {
             collision_mask: properties.mask.unwrap_or(defaults.collision_mask),
             ..defaults
         };
-        let pins = self.pins(node, part, properties, &painted);
-        self.world.entity_mut(part.entity).insert((cloth, pins));
-        if part.is_skinned {
-            self.world.entity_mut(part.entity).insert(skin(properties));
+        let pins = self.pins(node, is_skinned, properties, &painted);
+        self.world.entity_mut(piece.entity).insert((cloth, pins));
+        if is_skinned {
+            self.world.entity_mut(piece.entity).insert(skin(properties));
         } else if let Some(name) = properties.of_skin().filter(|_| node.properties.of_skin().is_some()) {
             self.report.warn(&node.subject, format_args!("{name} does nothing: its mesh follows no armature"));
         }
-        self.give_fabric(node, part, properties);
+        self.give_fabric(node, piece.entity, properties);
     }
 
     /// What is painted on the mesh of a part.
@@ -74,8 +120,8 @@ impl Scenery<'_, '_> {
         label.and_then(|label| self.painted.get(label)).cloned().unwrap_or_default()
     }
 
-    /// The pins that a part has by its properties and by what is painted on it. Says so where that can't be meant.
-    fn pins(&mut self, node: &Node, part: &Part, properties: &Properties, painted: &Painted) -> Pins {
+    /// The pins that cloth has by its properties and by what is painted on it. Says so where that can't be meant.
+    fn pins(&mut self, node: &Node, is_skinned: bool, properties: &Properties, painted: &Painted) -> Pins {
         let mut pins = properties.pin.clone().map_or_else(Pins::none, Pins::from);
         match painted.is_pinned {
             Some(true) => pins = pins.and(Pins::attribute(ATTRIBUTE_PIN)),
@@ -94,25 +140,25 @@ impl Scenery<'_, '_> {
             );
         } else if fixed.is_empty() && pins.groups.is_empty() {
             let (held, falls) = ("it may slide about on its body", "it falls");
-            let what = if part.is_skinned { held } else { falls };
+            let what = if is_skinned { held } else { falls };
             self.report.warn(
                 &node.subject,
                 format_args!("nothing holds it: _CLOTH is nowhere 0, so {what}; paint 0 on what is to be held"),
             );
         }
         // On a skeleton `ClothSkin` does that.
-        if !part.is_skinned && !fixed.is_empty() { pins.and(Pins::indices(fixed)) } else { pins }
+        if !is_skinned && !fixed.is_empty() { pins.and(Pins::indices(fixed)) } else { pins }
     }
 
-    fn give_fabric(&mut self, node: &Node, part: &Part, properties: &Properties) {
+    fn give_fabric(&mut self, node: &Node, cloth: Entity, properties: &Properties) {
         match &properties.cloth {
             Some(WhatCloth::Preset(fabric)) => {
-                self.world.entity_mut(part.entity).insert(Fabric::clone(fabric));
+                self.world.entity_mut(cloth).insert(Fabric::clone(fabric));
             }
             Some(WhatCloth::File(file)) => match self.context.path().resolve_embed_str(file) {
                 Ok(path) => {
                     let fabric = FabricHandle::new(self.context.load(path));
-                    self.world.entity_mut(part.entity).insert(fabric);
+                    self.world.entity_mut(cloth).insert(fabric);
                 }
                 Err(error) => {
                     self.report.warn(&node.subject, format_args!("cloth is {file}, which is no path: {error}"));
@@ -121,11 +167,6 @@ impl Scenery<'_, '_> {
             _ => {}
         }
     }
-}
-
-/// The parts of a node that become cloth, each for itself. A garment of several materials is several cloths.
-fn cloth_parts(node: &Node) -> &[Part] {
-    &node.parts
 }
 
 /// How closely cloth follows its skeleton.

@@ -46,6 +46,17 @@ pub(super) struct Painted {
     pub is_pinned: Option<bool>,
 }
 
+impl Painted {
+    /// What is painted on several meshes, one after the other: what isn't on all of them is on none.
+    pub fn joined(meshes: impl Iterator<Item = Self>) -> Self {
+        let append = |all: Self, next: Self| Self {
+            looseness: all.looseness.zip(next.looseness).map(|(all, next)| [all, next].concat()),
+            is_pinned: all.is_pinned.zip(next.is_pinned).map(|(all, next)| all | next),
+        };
+        meshes.reduce(append).unwrap_or_default()
+    }
+}
+
 impl Paint {
     /// Reads the attributes of a primitive. What can't be used is left out with one warning, which names the `mesh`.
     pub fn read(primitive: &Primitive, mesh: &str, buffers: &[Vec<u8>], report: &mut Report) -> Self {

@@ -31,25 +31,28 @@ impl Scenery<'_, '_> {
         let nodes = node::nodes(self.world, &bones, self.report);
         let subject = format!("scene \"{}\"", node::name(self.world, root));
         let of_all = node::read::<GltfSceneExtras>(self.world, root, Place::Scene, &subject, self.report);
-        let mut is_cloth_somewhere = false;
-        for node in &nodes {
-            if node.properties.proxy.is_some() {
-                self.put_aside(node);
-                continue;
+        let mut cloths = Vec::new();
+        let is_proxy = |node: &&Node| node.properties.proxy.is_some();
+        for node in nodes.iter().filter(|node| !is_proxy(node)) {
+            let made = self.make_garment(node, &of_all, &bones);
+            if !made.is_empty() {
+                cloths.push((node.entity, made));
             }
-            is_cloth_somewhere |= self.make_garment(node, &of_all, &bones);
             self.make_collider(node);
             if let Some(speed) = node.properties.wind {
                 // An empty's arrow points along Blender's Z, which is Y here.
                 self.world.entity_mut(node.entity).insert(Wind { velocity: Vec3::Y * speed, ..default() });
             }
         }
+        for node in nodes.iter().filter(is_proxy) {
+            self.make_proxy(node, &cloths);
+        }
         for node in nodes.iter().filter(|node| node.properties.body == Some(true)) {
             let except = self.left_out_of(node.entity, &nodes);
             self.world.entity_mut(node.entity).insert(ClothBody { except, ..default() });
         }
         let is_painted = || self.painted.values().any(|painted| painted.looseness.is_some());
-        if !is_cloth_somewhere && is_painted() {
+        if cloths.is_empty() && is_painted() {
             info!(
                 "{}: _CLOTH is painted, and nothing says that it is cloth; write the property `cloth` on the object, and export \
                  Custom Properties",
@@ -58,17 +61,8 @@ impl Scenery<'_, '_> {
         }
     }
 
-    /// A mesh that is to follow another one isn't drawn, and is no part of a body: that other one is there instead.
-    fn put_aside(&mut self, node: &Node) {
-        self.report.warn(
-            &node.subject,
-            "cloth_proxy isn't supported yet: it is hidden, and the mesh that it names is drawn; remove one of the two",
-        );
-        self.world.entity_mut(node.entity).insert(Visibility::Hidden);
-    }
-
-    /// The names of what is no part of the body on a node: what follows another mesh, and what has a collider of its own, or is to
-    /// have none.
+    /// The names of what is no part of the body on a node: what follows a cloth, and what has a collider of its own, or is to have
+    /// none.
     fn left_out_of(&self, body: Entity, nodes: &[Node]) -> Vec<String> {
         let is_left_out = |node: &&Node| node.properties.proxy.is_some() || node.properties.collider.is_some();
         let is_below = |node: &&Node| self.ancestors(node.entity).any(|ancestor| ancestor == body);

@@ -83,13 +83,3 @@ fn an_armature_is_a_body_without_what_has_a_collider_of_its_own_or_is_to_have_no
     assert_eq!(shop.all::<ClothCollider>(shop.named(root, "lower")).len(), 0);
     assert_eq!(warnings("body.glb"), [""; 0]);
 }
-
-#[test]
-fn what_follows_another_mesh_is_hidden_and_no_part_of_the_body_until_that_is_supported() {
-    let file = worn_sheet().property("/nodes/3", "cloth_body", true).property("/nodes/0", "cloth_proxy", "Coarse");
-    let (shop, root) = Shop::show("proxy.glb", file);
-    assert_eq!(*shop.get::<Visibility>(shop.named(root, "Sheet")), Visibility::Hidden);
-    assert_eq!(shop.get::<ClothBody>(shop.named(root, "Armature")).except, ["Sheet"]);
-    let [warning] = &warnings("proxy.glb")[..] else { panic!("one warning") };
-    assert!(warning.contains("object \"Sheet\"") && warning.contains("isn't supported yet"), "{warning}");
-}

@@ -101,14 +101,77 @@ fn a_fabric_file_is_looked_for_beside_the_model_or_from_the_root_of_the_assets()
 }
 
 #[test]
-fn a_mesh_of_several_materials_is_cloth_all_over() {
-    let mut file = sheet().property("/nodes/0", "cloth", "silk").property("/nodes/0", "cloth_pin", "top");
-    let part = file.primitive().clone();
-    file.json["meshes"][0]["primitives"].as_array_mut().expect("primitives").push(part);
-    let (shop, root) = Shop::show("two_materials.glb", file);
+fn an_object_of_several_materials_is_one_garment_if_all_of_them_are_the_same_cloth() {
+    let (shop, root) = Shop::show("one_garment.glb", two_materials().property("/nodes/0", "cloth", "silk"));
+    let sheet = shop.named(root, "Sheet");
+    assert_eq!(shop.all::<Cloth>(root), [sheet]);
+    assert_eq!(*shop.get::<Fabric>(sheet), Fabric::SILK);
+    assert_eq!(shop.all::<ClothPartOf>(root).len(), 2);
+    let state = shop.get::<ClothState>(sheet);
+    assert_eq!(state.particle_count(), SIDE * SIDE, "what is at the same place is sewn");
+    assert_eq!((0..SIDE * SIDE).filter(|&particle| state.is_pinned(particle)).count(), SIDE, "painted on both");
+    assert_eq!(warnings("one_garment.glb"), [""; 0]);
+    let file = two_materials().property("/nodes/0", "cloth", true).property("/materials/0", "cloth", "denim");
+    let (shop, root) = Shop::show("two_fabrics.glb", file);
     let cloths = shop.all::<Cloth>(root);
-    assert_eq!(cloths.len(), 2);
+    assert_eq!(cloths.len(), 2, "a cloth has one fabric");
     assert!(cloths.iter().all(|&cloth| *shop.get::<ClothStatus>(cloth) == ClothStatus::Ready));
+}
+
+#[test]
+fn materials_stay_cloths_of_their_own_where_other_meshes_are_below_the_object() {
+    let mut file = two_materials().property("/nodes/0", "cloth", "silk");
+    let buckle = file.add("nodes", json!({ "name": "Buckle", "mesh": 0, "extras": { "cloth": false } }));
+    file.json["nodes"][0]["children"] = json!([buckle]);
+    let (shop, root) = Shop::show("buckle.glb", file);
+    assert_eq!(shop.all::<Cloth>(root).len(), 2);
+    let [warning] = &warnings("buckle.glb")[..] else { panic!("one warning") };
+    assert!(warning.contains("object \"Sheet\"") && warning.contains("move them elsewhere"), "{warning}");
+}
+
+/// A sheet that is there twice, in two materials, whose upper edge is painted as pinned.
+fn two_materials() -> File {
+    let mut file = sheet().paint("_PIN", &by_row(|down| f32::from(down == 0.0)));
+    let material = file.add("materials", json!({ "name": "Trim" }));
+    let mut part = file.primitive().clone();
+    part["material"] = material.into();
+    file.json["meshes"][0]["primitives"].as_array_mut().expect("primitives").push(part);
+    file
+}
+
+/// A sheet, and the same as a fine mesh that follows what it names.
+fn with_proxy(of: &str) -> File {
+    let mut file = sheet().property("/nodes/0", "cloth", "silk").property("/nodes/0", "cloth_pin", "top");
+    let fine = file.add("nodes", json!({ "name": "Fine", "mesh": 0, "extras": { "cloth_proxy": of } }));
+    file.json["scenes"][0]["nodes"] = json!([0, fine]);
+    file
+}
+
+#[test]
+fn a_fine_mesh_follows_the_cloth_that_it_names() {
+    let (mut shop, root) = Shop::show("fine.glb", with_proxy("Sheet"));
+    let (cloth, fine) = (shop.cloth(root), shop.all::<ClothProxy>(root)[0]);
+    assert_eq!(shop.get::<ClothProxy>(fine).driver, cloth, "of this instance");
+    assert_eq!(*shop.get::<Visibility>(cloth), Visibility::Hidden);
+    shop.app.world_mut().spawn(Wind { velocity: Vec3::Z * 5.0, ..default() });
+    run(&mut shop.app, 30);
+    let lowest = |entity| crate::common::points(shop.mesh(entity)).last().copied().expect("it has vertices");
+    assert!(lowest(fine).z > 0.05 && lowest(fine).distance(lowest(cloth)) < 1e-4, "{}", lowest(fine));
+    assert_eq!(warnings("fine.glb"), [""; 0]);
+}
+
+#[test]
+fn a_fine_mesh_that_names_no_cloth_is_told_of_with_the_nearest_name() {
+    let mut ring = with_proxy("Fine");
+    ring.json["nodes"][0]["extras"] = json!({});
+    for (path, file, expected) in
+        [("misspelt.glb", with_proxy("Sheat"), "did you mean Sheet?"), ("ring.glb", ring, "write `cloth` on it")]
+    {
+        let (shop, root) = Shop::show(path, file);
+        assert_eq!(shop.all::<ClothProxy>(root).len(), 0);
+        let [warning] = &warnings(path)[..] else { panic!("one warning") };
+        assert!(warning.contains("object \"Fine\"") && warning.contains(expected), "{warning}");
+    }
 }
 
 #[test]
