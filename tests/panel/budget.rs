@@ -46,7 +46,9 @@ fn nothing_is_written_while_nothing_is_edited() {
 #[test]
 fn the_budget_goes_back_with_what_is_around() {
     // Before the panel looks for the first time.
-    let mut app = app_with(|app: &mut App| drop(app.insert_resource(ClothBudget { milliseconds: 4.0 })));
+    let mut app = app_with(|app: &mut App| {
+        app.insert_resource(ClothBudget { milliseconds: 4.0 });
+    });
     spawn_cloth(&mut app, "Curtain", ());
     let mut desk = Desk::new(app);
     for entry in ["Wind, gravity, budget", "Everything"] {

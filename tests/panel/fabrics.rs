@@ -32,7 +32,7 @@ fn top(desk: &Desk, role: Role, name: &str) -> f32 {
 
 /// What is written beneath the presets.
 fn source(desk: &Desk) -> String {
-    let preset = top(desk, Role::ComboBox, "Preset");
+    let preset = desk.control(Role::ComboBox, "Preset").rect().center().y;
     let below = |node: &egui_kittest::Node| {
         let is_drawn = node.accesskit_node().bounding_box().is_some();
         is_drawn && node.accesskit_node().role() == Role::Label && node.rect().top() > preset

@@ -6,6 +6,8 @@
 //!  down --- . ----- .       and down from there, row after row, across the level ones
 //! ```
 
+use bevy_math::Vec3;
+
 use super::{
     cells::Cells,
     grouped::Grouped,
@@ -27,6 +29,38 @@ impl Rectangle {
     /// Whether the particles are numbered row by row.
     pub fn is_in_order(&self) -> bool {
         (0..).zip(&self.particles).all(|(i, &particle)| i == particle)
+    }
+
+    /// How far rows and columns zigzag, rad: half of what they turn within the surface at one particle other than at the next, on average.
+    /// Those of a flare turn everywhere alike. Chains that zigzag are longer than where they lead, and give way.
+    pub fn zigzag(&self, rest: &[Vec3]) -> f32 {
+        let (columns, rows) = (self.columns, self.particles.len() / self.columns.max(1));
+        let place = |row: usize, column: usize| rest[self.particles[row * columns + column] as usize];
+        let (mut sum, mut count) = (0.0, 0);
+        let mut add = |turns: &[f32]| {
+            sum += turns.windows(2).map(|pair| (pair[1] - pair[0]).abs() / 2.0).sum::<f32>();
+            count += turns.len().saturating_sub(1);
+        };
+        let turn = |before: Vec3, at: Vec3, after: Vec3, across: Vec3| {
+            let (to, from) = ((at - before).normalize_or_zero(), (after - at).normalize_or_zero());
+            let normal = (to + from).cross(across).normalize_or_zero();
+            to.cross(from).dot(normal)
+        };
+        for row in 1..rows.saturating_sub(1) {
+            let at = |column: usize| {
+                let across = place(row + 1, column) - place(row - 1, column);
+                turn(place(row, column - 1), place(row, column), place(row, column + 1), across)
+            };
+            add(&(1..columns - 1).map(at).collect::<Vec<_>>());
+        }
+        for column in 1..columns.saturating_sub(1) {
+            let at = |row: usize| {
+                let across = place(row, column + 1) - place(row, column - 1);
+                turn(place(row - 1, column), place(row, column), place(row + 1, column), across)
+            };
+            add(&(1..rows - 1).map(at).collect::<Vec<_>>());
+        }
+        sum / count.max(1) as f32
     }
 }
 
