@@ -42,7 +42,7 @@ struct Piece(&'static str);
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     common::spawn_camera(&mut commands, Vec3::new(1.5, 1.3, 2.9), Vec3::new(0.0, 0.95, 0.0));
     let character = commands.spawn((model(&assets), Piece("Body"), Character)).id();
-    commands.spawn((model(&assets), Piece("Tunic"), ClothWornBy(character), ChildOf(character)));
+    commands.spawn((model(&assets), Piece("Tunic"), ClothWornBy(character)));
 }
 
 /// The file has body and clothes: each piece is a scene of its own, of which the rest is left out.
@@ -66,7 +66,7 @@ fn change(
         let is_it = |&entity: &Entity| pieces.get(entity).is_ok_and(|piece| piece.0 == name);
         match outfit.and_then(|outfit| outfit.iter().find(is_it)) {
             Some(worn) => commands.entity(worn).despawn(),
-            None => drop(commands.spawn((model(&assets), Piece(name), ClothWornBy(character), ChildOf(character)))),
+            None => drop(commands.spawn((model(&assets), Piece(name), ClothWornBy(character)))),
         }
     }
 }

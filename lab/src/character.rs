@@ -93,7 +93,7 @@ impl Character {
         }
         let Seen { mut strains, substeps, particles, inside, deepest, step_times } = seen;
         strains.sort_unstable_by(f32::total_cmp);
-        let quantile = |share: f32| strains.get((share * strains.len().saturating_sub(1) as f32) as usize).copied();
+        let quantile = |share: f64| strains.get((share * strains.len().saturating_sub(1) as f64) as usize).copied();
         let worst = times.iter().copied().fold(0.0, f64::max);
         let median = measure::median(times);
         Ok(json!({

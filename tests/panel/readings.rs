@@ -86,7 +86,10 @@ fn a_longer_reason_pushes_nothing_about() {
     desk.frames(3);
     let texts = desk.texts();
     assert!(texts.iter().any(|text| text.contains(", something with")), "{texts:?}");
-    assert_eq!(desk.control(Role::Slider, "Density").rect(), before);
+    let after = desk.control(Role::Slider, "Density").rect();
+    // But for rounding: the window grows by fractions of a point.
+    let moved = (after.min - before.min).length().max((after.max - before.max).length());
+    assert!(moved < 0.5, "from {before:?} to {after:?}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The panel's controls. None can be made without the text that explains it.
 
 use bevy_egui::egui::{
-    Align, Button, CollapsingHeader, ComboBox, Label, Layout, Response, RichText, TextStyle, Ui, UiBuilder, vec2,
+    Align, Button, CollapsingHeader, ComboBox, Label, Layout, Response, RichText, Sense, TextStyle, Ui, UiBuilder, vec2,
 };
 
 /// Width of names, in points.
@@ -95,19 +95,18 @@ pub(super) fn long_reading(ui: &mut Ui, naming: Naming<'_>, value: String) {
     });
 }
 
-/// A row of up to three numbers, each with what it is of. Their places don't depend on their digits.
+/// A row of up to three numbers, each above what it is of. Their places don't depend on their digits: a row that is too wide would widen
+/// all others.
 pub(super) fn figures(ui: &mut Ui, naming: Naming<'_>, figures: &[(String, &str)]) {
     row(ui, naming, false, |ui, name| {
-        let size = vec2((ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0, ui.spacing().interact_size.y);
+        let height = ui.text_style_height(&TextStyle::Body) + ui.text_style_height(&TextStyle::Small);
+        let size = vec2((ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0, height);
         let figure = |ui: &mut Ui, (value, of): &(String, &str)| {
-            let layout = Layout::left_to_right(Align::Center);
-            let both = ui.allocate_ui_with_layout(size, layout, |ui| {
-                ui.set_min_width(size.x);
-                ui.spacing_mut().item_spacing.x = 3.0;
-                let value = ui.add(Label::new(value).selectable(false));
-                value | ui.add(Label::new(RichText::new(*of).small().weak()).selectable(false))
-            });
-            both.inner
+            let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+            let mut ui = ui.new_child(UiBuilder::new().max_rect(rect).layout(Layout::top_down(Align::Min)));
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let value = ui.add(Label::new(value).selectable(false).truncate());
+            value | ui.add(Label::new(RichText::new(*of).small().weak()).selectable(false).truncate())
         };
         (figures.iter().fold(name, |all, one| all | figure(ui, one)), ())
     });

@@ -164,9 +164,10 @@ fn a_fine_mesh_follows_the_cloth_that_it_names() {
 fn a_fine_mesh_that_names_no_cloth_is_told_of_with_the_nearest_name() {
     let mut ring = with_proxy("Fine");
     ring.json["nodes"][0]["extras"] = json!({});
-    for (path, file, expected) in
-        [("misspelt.glb", with_proxy("Sheat"), "did you mean Sheet?"), ("ring.glb", ring, "write `cloth` on it")]
-    {
+    for (path, file, expected) in [
+        ("no_such_driver.glb", with_proxy("Sheat"), "did you mean Sheet?"),
+        ("own_driver.glb", ring, "write `cloth` on it"),
+    ] {
         let (shop, root) = Shop::show(path, file);
         assert_eq!(shop.all::<ClothProxy>(root).len(), 0);
         let [warning] = &warnings(path)[..] else { panic!("one warning") };
