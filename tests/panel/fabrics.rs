@@ -96,7 +96,7 @@ fn the_source_stands_beneath_the_preset() {
         let text = source(&desk);
         assert!(text.contains(preset.source), "{text:?} for {}", preset.name);
         assert_eq!(text.contains("Nothing is measured"), preset.measured.is_empty(), "{text:?}");
-        let marks = desk.texts().into_iter().filter(|text| text == "●").count();
+        let marks = desk.texts().into_iter().filter(|text| text == "•").count();
         assert_eq!(marks, preset.measured.len(), "{}", preset.name);
     }
 }
@@ -106,7 +106,7 @@ fn an_edited_preset_is_told_until_much_of_it_is_edited() {
     let mut app = app();
     let cloth = spawn_cloth(&mut app, "Curtain", Fabric::DENIM);
     let mut desk = Desk::new(app);
-    let marks = |desk: &Desk| desk.texts().into_iter().filter(|text| text == "●").count();
+    let marks = |desk: &Desk| desk.texts().into_iter().filter(|text| text == "•").count();
     let before = marks(&desk);
     let slider = desk.control(Role::Slider, "Density").rect();
     desk.type_value("Density", "0.5");

@@ -52,7 +52,7 @@ pub(super) fn row<'a, R>(
                 let text = RichText::new(naming.name);
                 let name = ui.add(Label::new(if differs { text.italics() } else { text }).selectable(false));
                 if is_marked {
-                    ui.add(Label::new(RichText::new("●").small().weak()).selectable(false));
+                    ui.add(Label::new(RichText::new("•").small().weak()).selectable(false));
                 }
                 name
             })

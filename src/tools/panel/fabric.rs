@@ -97,7 +97,7 @@ fn has(fabric: &Fabric, preset: &FabricPreset, field: &str) -> bool {
 
 /// Where a preset's values come from.
 fn source(preset: &FabricPreset) -> String {
-    let how = if preset.measured.is_empty() { "Nothing is measured." } else { "● measured, all else is plausible." };
+    let how = if preset.measured.is_empty() { "Nothing is measured." } else { "• measured, all else is plausible." };
     format!("{how} {}", preset.source)
 }
 
