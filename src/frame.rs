@@ -17,3 +17,6 @@ pub(crate) use skeleton::{Skeletons, joint_matrices};
 pub(crate) use step::{FromLatestStep, StepNumber, Steps, begin_fixed_step, begin_late_step};
 pub use teleport::ColliderTeleportThreshold;
 pub(crate) use teleport::{Jump, JumpDetection, PastPose, Teleported, forget_teleports};
+
+/// How long scenes may take to come before what is missing of them is told of, s.
+pub(crate) const PATIENCE: f32 = 5.0;

@@ -9,6 +9,6 @@ mod source;
 pub use grid::ClothGrid;
 pub(crate) use job::Jobs;
 pub(crate) use join::{Joined, Span, join, transform};
-pub(crate) use skin::{Skin, is_skinned};
+pub(crate) use skin::{Skin, follows, is_skinned};
 pub use source::ATTRIBUTE_WARP;
 pub(crate) use source::{read, read_uvs};

@@ -1,6 +1,6 @@
 //! The meshes that are drawn: copies of the user's.
 
-use bevy::prelude::*;
+use bevy::{math::Affine3A, prelude::*};
 
 use crate::{
     draw::{ClothMesh, DrawnMesh},
@@ -51,7 +51,7 @@ pub(super) fn make_copies(
             }
             None => meshes.add(copied),
         };
-        drawn.push(DrawnMesh { entity, source, mesh, span, from_cloth: bevy::math::Affine3A::IDENTITY });
+        drawn.push(DrawnMesh { entity, source, mesh, span, from_cloth: Affine3A::IDENTITY });
     }
     drawn
 }

@@ -9,14 +9,11 @@ use crate::{
     cloth::Cloth,
     draw::ClothMesh,
     error::ClothError,
-    frame::{Skeletons, is_invertible},
+    frame::{PATIENCE, Skeletons, is_invertible},
     garment::{ClothPartOf, ClothParts, Garment, GarmentPart},
     mesh_input::{Joined, Span, join},
     proxy::ClothProxy,
 };
-
-/// How long meshes may take to come before a cloth without any is told of, s.
-const PATIENCE: f32 = 5.0;
 
 /// The meshes of a garment, and where they are.
 #[derive(SystemParam)]
@@ -67,7 +64,9 @@ pub(crate) fn join_garments(
             }
             Some(mut garment) => {
                 let is_modified = || garment.parts.iter().any(|part| modified.contains(&part.source.id()));
-                if garment.joined.is_none() || !garment.is_made_of(&parts) || is_modified() {
+                // What failed may be mended by what isn't looked at here, as a transform that was flat.
+                let is_sewn = matches!(garment.joined, Some(Ok(_)));
+                if !is_sewn || !garment.is_made_of(&parts) || is_modified() {
                     sew(&mut garment);
                 }
             }
@@ -122,21 +121,22 @@ impl Wardrobe<'_, '_> {
             if is_other || self.part_of.get(entity).is_ok_and(|part| part.0 != garment) {
                 continue;
             }
-            parts.extend(self.part(entity));
+            parts.extend(self.part(entity, garment));
             next.extend(self.children.get(entity).into_iter().flatten().rev());
         }
         for &entity in known.into_iter().flat_map(|parts| parts.collection()) {
             if parts.iter().all(|part| part.entity != entity) {
-                parts.extend(self.part(entity));
+                parts.extend(self.part(entity, garment));
             }
         }
         parts
     }
 
-    fn part(&self, entity: Entity) -> Option<Part<'_>> {
+    fn part(&self, entity: Entity, garment: Entity) -> Option<Part<'_>> {
         let (mesh, skeleton) = self.meshes.get(entity).ok()?;
         // One that is drawn already, be it of a cloth that this is a copy of.
-        let drawn = self.drawn.iter().find_map(|cloth| cloth.drawn_with(mesh.id()));
+        let own = self.drawn.get(garment).ok().and_then(|own| own.drawn_with(mesh.id()));
+        let drawn = own.or_else(|| self.drawn.iter().find_map(|cloth| cloth.drawn_with(mesh.id())));
         Some(Part { entity, source: drawn.map_or(&mesh.0, |drawn| &drawn.source), skeleton })
     }
 

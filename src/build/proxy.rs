@@ -15,16 +15,13 @@ use crate::{
     cloth::Cloth,
     draw::{self, Binding, ClothMesh, Drawn, copy_with_skin, copy_without_skin},
     error::ClothError,
-    frame::{Skeletons, is_invertible},
+    frame::{PATIENCE, Skeletons, is_invertible},
     garment::{ClothParts, Garment},
     mesh_input::{self, Skin, is_skinned},
     proxy::{ClothProxy, Embedded, ProxyWait},
     solver::{SourceMesh, build::weld::weld, embedding::Embedding},
     state::{BoundSkin, ClothState, ClothStatus, Skinning},
 };
-
-/// How long a driver may take to come before it is told that there is none, s.
-const PATIENCE: f32 = 5.0;
 
 /// Why a mesh can't follow its driver.
 #[derive(Debug, Error)]
@@ -158,20 +155,26 @@ impl FineItem<'_, '_> {
         skeletons: &Skeletons,
     ) -> Result<Option<Built>, ProxyError> {
         self.proxy.validate()?;
-        let source = mesh_input::read(mesh)?.wound_by_normals();
-        let welded = weld(&source.positions, &source.triangles);
+        // First what takes no time: what fails is tried again in each frame.
+        let other_skeleton = || ProxyError::Skeleton(self.proxy.driver);
         let skeleton = self.skeleton().filter(|_| is_skinned(mesh));
-        let (skinning, to_driver) = match (skeleton, &driver.skinning.0) {
-            (None, None) => (Skinning(None), self.to_driver(skeletons)?),
+        let to_driver = match (skeleton, &driver.skinning.0) {
+            (None, None) => self.to_driver(skeletons)?,
             (Some(skeleton), Some(bound)) => {
                 let Some(bindposes) = skeletons.bindposes(skeleton) else { return Ok(None) };
                 if bound.joints != skeleton.joints || bound.bindposes != bindposes {
-                    return Err(ProxyError::Skeleton(self.proxy.driver));
+                    return Err(other_skeleton());
                 }
-                let bound = bind(mesh, &source, &welded.vertex_of_particle, bound, skeletons);
-                (Skinning(Some(Box::new(bound.ok_or(ProxyError::Skeleton(self.proxy.driver))?))), Affine3A::IDENTITY)
+                Affine3A::IDENTITY
             }
-            _ => return Err(ProxyError::Skeleton(self.proxy.driver)),
+            _ => return Err(other_skeleton()),
+        };
+        let source = mesh_input::read(mesh)?.wound_by_normals();
+        let welded = weld(&source.positions, &source.triangles);
+        let bind = |bound: &BoundSkin| bind(mesh, &source, &welded.vertex_of_particle, bound, skeletons);
+        let skinning = match &driver.skinning.0 {
+            None => Skinning(None),
+            Some(bound) => Skinning(Some(Box::new(bind(bound).ok_or_else(other_skeleton)?))),
         };
         let place = |&vertex: &u32| to_driver.transform_point3a(source.positions[vertex as usize].into());
         let points: Vec<Vec3A> = welded.vertex_of_particle.iter().map(place).collect();

@@ -1,6 +1,6 @@
 //! Fine meshes are drawn with the coarse cloth that they follow.
 
-use bevy::{math::Affine3A, prelude::*};
+use bevy::{ecs::system::NonSendMarker, math::Affine3A, prelude::*};
 
 use super::mesh::{ClothMesh, Drawn};
 use crate::{
@@ -15,6 +15,7 @@ pub(crate) fn shape_proxies(
     drivers: Query<&ClothMesh, With<ClothState>>,
     poses: Query<&GlobalTransform>,
     run: Res<ClothRun>,
+    _main_thread: NonSendMarker,
 ) {
     frame::for_each(proxies.iter_mut(), run.parallel, |(mut embedded, skinning, transform, mut mesh)| {
         let Ok(driver) = drivers.get(embedded.driver) else { return };

@@ -46,6 +46,12 @@ fn influences(mesh: &Mesh) -> Option<(&[[u16; JOINTS]], &[[f32; JOINTS]])> {
     (joints.len() == count && weights.len() == count).then_some((joints, weights))
 }
 
+/// Whether any vertex of a mesh follows a joint.
+pub(crate) fn follows(mesh: &Mesh, joint: usize) -> bool {
+    let of_vertices = influences(mesh).map(|(joints, weights)| joints.iter().flatten().zip(weights.iter().flatten()));
+    of_vertices.into_iter().flatten().any(|(&other, &weight)| usize::from(other) == joint && weight > 0.0)
+}
+
 impl Skin {
     /// Reads the skin of the vertices of `mesh` with these numbers, which are at `positions`. None where it has no skin.
     pub fn read(mesh: &Mesh, positions: &[Vec3], vertices: &[u32]) -> Option<Self> {

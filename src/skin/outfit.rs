@@ -1,11 +1,8 @@
 //! Outfits: clothes that are put on the skeleton of another entity, joint by joint of the same name.
 
-use bevy::{
-    ecs::system::SystemParam,
-    mesh::{VertexAttributeValues, skinning::SkinnedMesh},
-    platform::collections::HashMap,
-    prelude::*,
-};
+use bevy::{ecs::system::SystemParam, mesh::skinning::SkinnedMesh, platform::collections::HashMap, prelude::*};
+
+use crate::{frame::PATIENCE, mesh_input::follows};
 
 /// Puts clothes on a character: every skinned mesh on this entity or below it follows the skeleton of the character from now on,
 /// each joint that of the same [`Name`] at or below the entity that is given.
@@ -50,9 +47,6 @@ pub(crate) struct OwnJoints {
     joints: Vec<Entity>,
     character: Entity,
 }
-
-/// How long a character may take to come before what it lacks is told of, s.
-const PATIENCE: f32 = 5.0;
 
 /// Names in the hierarchy.
 #[derive(SystemParam)]
@@ -119,17 +113,6 @@ pub(crate) fn put_on(
             );
         }
     }
-}
-
-/// Whether any vertex of a mesh follows a joint.
-fn follows(mesh: &Mesh, joint: usize) -> bool {
-    let (Some(VertexAttributeValues::Uint16x4(joints)), Some(VertexAttributeValues::Float32x4(weights))) =
-        (mesh.attribute(Mesh::ATTRIBUTE_JOINT_INDEX), mesh.attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT))
-    else {
-        return false;
-    };
-    let influences = joints.iter().flatten().zip(weights.iter().flatten());
-    influences.into_iter().any(|(&other, &weight)| usize::from(other) == joint && weight > 0.0)
 }
 
 /// Gives an outfit that is taken off its own skeleton back.

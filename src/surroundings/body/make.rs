@@ -15,10 +15,7 @@ use super::{
     shares::{Joint, capsules},
     sources::{Anatomy, Found},
 };
-use crate::{cloth::Cloth, garment::ClothPartOf, surroundings::collider::ClothCollider};
-
-/// How long a scene may take to come before a body without a mesh is told of, s.
-const PATIENCE: f32 = 5.0;
+use crate::{cloth::Cloth, frame::PATIENCE, garment::ClothPartOf, surroundings::collider::ClothCollider};
 
 /// What has happened since the last frame that may give bodies other meshes.
 #[derive(SystemParam)]
